@@ -88,7 +88,9 @@ impl Appraisal {
             let left = observations::residuals(study, scene, model, &course);
             let like = other.map(|other| &other.weights.noises[scene]);
             let known = &study.scenes[scene];
-            let (marks, found) = estimated(known, &left, like, &fitted(known)).into_iter().unzip();
+            let unsettled: Vec<bool> = (0..known.rows()).map(|row| course.shown.is_unsettled(row)).collect();
+            let (marks, found) =
+                estimated(known, &left, like, (&fitted(known), &unsettled)).into_iter().unzip();
             residuals.push(left);
             outliers.push(marks);
             estimates.push(found);
@@ -140,18 +142,20 @@ fn each<T>(estimates: &[Vec<Estimate>], of: impl Fn(&Estimate) -> T) -> Vec<Vec<
     estimates.iter().map(|channels| channels.iter().map(&of).collect()).collect()
 }
 
-/// Outliers and estimate of every channel of a scene by the rows that are fitted; `like` are weights with which these are to be compared.
+/// Samples that are left out, and the estimate, of every channel of a scene by the rows that are fitted; `like` are weights with which
+/// these are to be compared. Outliers are left out, and rows in which it is not known where an axis is.
 fn estimated(
     known: &Scene<'_>,
     residuals: &[Vec<f64>],
     like: Option<&Vec<Noise>>,
-    fitted: &[bool],
+    (fitted, unsettled): (&[bool], &[bool]),
 ) -> Vec<(Vec<bool>, Estimate)> {
     let work = residuals.len() * known.rows() * ESTIMATES;
     parallel::counted(residuals.len(), work, |channel| {
         let residual = &residuals[channel];
         let apart = |row: usize, distance: f64| known.returns.apart(residual, row, distance);
-        let marks = outliers::mark(residual, known.channels[channel].step(), &apart);
+        let mut marks = outliers::mark(residual, known.channels[channel].step(), &apart);
+        marks.iter_mut().zip(unsettled).for_each(|(mark, unsettled)| *mark |= unsettled);
         let counts = |row: usize| fitted[row] && residual[row].is_finite() && !marks[row];
         let valid: Vec<bool> = (0..residual.len()).map(counts).collect();
         let estimate = estimate(known, channel, residual, valid, like.map(|like| like[channel]));

@@ -38,7 +38,7 @@ use crate::unsteady;
 use crate::weights::Outliers;
 use crate::zeros;
 use crate::{Inputs, Keep, Progress};
-use decidable::{bent, crossed};
+use decidable::{bent, crossed, underway};
 use findings::report;
 use searched::{Opening, Searched};
 use summary::summaries;
@@ -133,6 +133,7 @@ fn concluded(
     }
     diagnosis.undecided.extend(crossed(&study, &found.fit.model));
     diagnosis.undecided.extend(bent(&study, &found.fit.model));
+    diagnosis.undecided.extend(underway(&found.fit.model));
     diagnosis.undecided.extend(diagnosis.model.iter().map(decidable::since_when));
     let moving =
         if feature.is_none() { unsteady::moving(&study, &found.appraisal, units.outside) } else { None };

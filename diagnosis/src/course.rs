@@ -76,6 +76,7 @@ impl Ways {
             zero: zero(axis, position_loop),
             crossing: model.crossing(axis),
             bends: model.bends(),
+            underway: model.underway(),
         };
         let driven = loops.into_iter().enumerate().map(driven).collect();
         Self { driven, clock: model.setting(scene, Setting::Clock) }

@@ -271,6 +271,7 @@ fn same_effects(a: &Model, b: &Model) -> bool {
     let answered = |fitted: &Fitted| fitted.effect.side().and_then(Side::answered_by);
     let alike = |a: &Fitted, b: &Fitted| inert(a) == inert(b) && answered(a) == answered(b);
     let kind = |a: &Fitted, b: &Fitted| a.effect == b.effect || (rivals(&a.effect, &b.effect) && alike(a, b));
+    let driven = a.is_driven_as(b);
     let (a, b) = (&a.effects, &b.effects);
-    a.len() == b.len() && a.iter().all(|member| b.iter().any(|other| kind(member, other)))
+    driven && a.len() == b.len() && a.iter().all(|member| b.iter().any(|other| kind(member, other)))
 }

@@ -1,4 +1,5 @@
-//! Models: which effects act, where, and how strongly; how the plays of axes act after a reversal, and how commands go between rows.
+//! Models: which effects act, where, and how strongly; how the plays of axes act after a reversal, how commands go between rows, and
+//! whether axes move where a run begins.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -38,7 +39,8 @@ impl Fitted {
     }
 }
 
-/// All that is held to act beside the calibration: effects, the plays that axes cross, and commands that bend between rows.
+/// All that is held to act beside the calibration: effects, and how axes move: the plays that they cross, commands that bend between rows,
+/// and runs that begin underway.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub(crate) struct Model {
     /// The settings of instruments that are fitted whatever else is, then the effects that were chosen.
@@ -50,6 +52,8 @@ pub(crate) struct Model {
     crossings: BTreeMap<usize, Crossing>,
     /// Whether commands bend between rows: a controller has more cycles than the recording has rows. Otherwise they go straight.
     bends: bool,
+    /// Whether axes move where a leg begins: it was cut out of a motion. Otherwise they rest there.
+    underway: bool,
 }
 
 impl Model {
@@ -136,9 +140,19 @@ impl Model {
         self.settings..self.effects.len()
     }
 
-    /// The same with plays that are crossed, and commands that go between rows, as in another model.
+    /// The same with axes that move as in another model.
     pub(crate) fn moving_as(self, other: &Self) -> Self {
-        Self { crossings: other.crossings.clone(), bends: other.bends, ..self }
+        Self { crossings: other.crossings.clone(), bends: other.bends, underway: other.underway, ..self }
+    }
+
+    /// Whether axes move as in another model, but for the plays that they cross.
+    pub(crate) fn is_driven_as(&self, other: &Self) -> bool {
+        (self.bends, self.underway) == (other.bends, other.underway)
+    }
+
+    /// Whether axes move otherwise than in a model of effects alone.
+    pub(crate) fn moves_otherwise(&self) -> bool {
+        self.crosses() || self.bends || self.underway
     }
 
     /// The same with commands that bend between rows.
@@ -149,6 +163,16 @@ impl Model {
     /// Whether commands bend between rows.
     pub(crate) fn bends(&self) -> bool {
         self.bends
+    }
+
+    /// The same with axes that move where a leg begins.
+    pub(crate) fn begun_underway(self) -> Self {
+        Self { underway: true, ..self }
+    }
+
+    /// Whether axes move where a leg begins.
+    pub(crate) fn underway(&self) -> bool {
+        self.underway
     }
 
     /// The same with plays that act at once.

@@ -21,6 +21,18 @@ pub(crate) struct Stand {
     pub(crate) velocity: f64,
 }
 
+/// Where a loop begins.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) enum Start {
+    /// At rest on its command.
+    #[default]
+    AtRest,
+    /// In the steady motion behind a command with this velocity and acceleration, which has gone on for long.
+    Underway { velocity: f64, acceleration: f64 },
+    /// Here.
+    At(Stand),
+}
+
 /// A command between two instants: a parabola, which is straight without acceleration.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Piece {
@@ -34,15 +46,14 @@ pub(crate) struct Piece {
 /// What a loop remembers from row to row.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Follower {
-    /// Where it stands in the first row; at rest on its command where nothing is said.
-    start: Option<Stand>,
+    start: Start,
     /// Time and command of the row before, and where it stood.
     before: Option<(f64, f64, Stand)>,
 }
 
 impl Follower {
     /// A loop that begins anywhere.
-    pub(crate) fn from(start: Option<Stand>) -> Self {
+    pub(crate) fn from(start: Start) -> Self {
         Self { start, before: None }
     }
 }
@@ -58,6 +69,15 @@ impl PositionLoop {
         self.time_constant < 0.0
     }
 
+    /// Behind this time, s, less than 1 % is left of any distance from the steady motion.
+    pub(crate) fn settling(self) -> f64 {
+        if self.acts() {
+            SETTLED * self.time_constant.max(2.0 * self.inertia / self.time_constant)
+        } else {
+            0.0
+        }
+    }
+
     /// Where the axis stands in the next row, to which its command has gone with this acceleration. In a row without a command nothing is
     /// known, and the loop goes on from the row before.
     pub(crate) fn follow(self, follower: &mut Follower, time: f64, command: f64, acceleration: f64) -> Stand {
@@ -65,13 +85,22 @@ impl PositionLoop {
             return Stand { position: f64::NAN, velocity: f64::NAN };
         }
         let stand = match follower.before {
-            None => follower.start.unwrap_or(Stand { position: command, velocity: 0.0 }),
+            None => self.begin(follower.start, command),
             Some((before, from, stand)) => {
                 self.step(stand, Piece { from, to: command, time: time - before, acceleration })
             }
         };
         follower.before = Some((time, command, stand));
         stand
+    }
+
+    /// Where it stands in the first row.
+    fn begin(self, start: Start, command: f64) -> Stand {
+        match start {
+            Start::AtRest => Stand { position: command, velocity: 0.0 },
+            Start::Underway { velocity, acceleration } => self.steady(command, velocity, acceleration),
+            Start::At(stand) => stand,
+        }
     }
 
     /// Where it stands at the end of a piece of its command.
@@ -107,6 +136,9 @@ impl PositionLoop {
         (y * even + (speed + fading * y) * odd, speed * even - (fading * speed + stiffness * y) * odd)
     }
 }
+
+/// After this many time constants less than 1 % of a distance is left.
+const SETTLED: f64 = 5.0;
 
 /// `e^(-fading t)` times cos(r t) and sin(r t)/r, or cosh and sinh where the square of r is negative.
 fn modes(time: f64, fading: f64, square: f64) -> (f64, f64) {

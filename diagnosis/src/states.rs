@@ -15,7 +15,7 @@ use std::sync::Arc;
 use crate::legs::{legs, stretches};
 use crate::noise::typical_step;
 use crate::parallel;
-use crate::position_loop::{PositionLoop, Stand};
+use crate::position_loop::{PositionLoop, Start};
 use crate::recording::{AxisChannels, Recording};
 use crate::rounded::unrounded;
 use crate::way::Way;
@@ -76,6 +76,14 @@ impl Given {
     }
 }
 
+impl Given {
+    /// Whether the command of an axis moves where a leg begins.
+    pub(crate) fn may_begin_underway(&self, axis: usize) -> bool {
+        let way = Way::new(&self.time, &self.programmed[axis], &self.legs);
+        way.stretches().any(|rows| matches!(beginning::underway(&way, rows), Start::Underway { .. }))
+    }
+}
+
 /// How an axis is driven.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Driven {
@@ -85,6 +93,8 @@ pub(crate) struct Driven {
     pub(crate) crossing: Crossing,
     /// Whether its command bends between rows.
     pub(crate) bends: bool,
+    /// Whether it moves already where a leg begins.
+    pub(crate) underway: bool,
 }
 
 /// The states of all rows of one recording.
@@ -118,6 +128,8 @@ pub(crate) struct AxisStates {
     pub(crate) lag_slope: Shared,
     /// How it changes with the inertia of the loop, where that has one.
     pub(crate) inertia_slope: Option<Shared>,
+    /// Whether it is not known where the axis is, because it began underway a moment ago; empty where it never does.
+    pub(crate) unsettled: Vec<bool>,
     /// How the position changes with the offset of the instrument's clock.
     pub(crate) clock_slope: Shared,
     /// Whether the axis moves at all.
@@ -274,6 +286,11 @@ impl States {
         Self { given: given.clone(), axes }
     }
 
+    /// Whether it is not known in a row where an axis is, because it began underway a moment ago.
+    pub(crate) fn is_unsettled(&self, row: usize) -> bool {
+        self.axes.iter().any(|axis| axis.unsettled.get(row) == Some(&true))
+    }
+
     /// The states in a stretch of rows.
     pub(crate) fn rows(&self, rows: Range<usize>) -> Rows<'_> {
         Rows { states: self, first: rows.start, end: rows.end, time: &self.given.time[rows] }
@@ -310,6 +327,7 @@ impl Standing {
             position_loop: PositionLoop::default(),
             lag_slope: self.zero.clone(),
             inertia_slope: None,
+            unsettled: Vec::new(),
             clock_slope: self.zero.clone(),
             moves: false,
         }
@@ -331,7 +349,7 @@ fn axis_states(
     let way = Way::new(&given.time, programmed, &given.legs);
     let mut states = if driven.position_loop.acts() {
         let way = if driven.bends { way.bending() } else { way };
-        let starts: Vec<Option<Stand>> =
+        let starts: Vec<Start> =
             way.stretches().map(|rows| beginning(&given.time, axis, &way, driven, rows)).collect();
         behind_loop(given, &way, driven, &starts, clock, resolution)
     } else if driven.position_loop.leads() {
@@ -386,6 +404,7 @@ fn as_programmed(
         position_loop: PositionLoop::default(),
         lag_slope: slope.clone(),
         inertia_slope: None,
+        unsettled: Vec::new(),
         clock_slope: slope,
         moves,
     }
@@ -416,7 +435,7 @@ fn behind_loop(
     given: &Given,
     way: &Way<'_>,
     driven: Driven,
-    starts: &[Option<Stand>],
+    starts: &[Start],
     clock: f64,
     resolution: f64,
 ) -> AxisStates {
@@ -449,8 +468,23 @@ fn behind_loop(
         position_loop: driven.position_loop,
         lag_slope,
         inertia_slope,
+        unsettled: unsettled(given, way, starts, driven.position_loop.settling()),
         moves,
     }
+}
+
+/// The rows within a time, s, from the beginning of each leg that begins underway: how the axis moved before is not known.
+fn unsettled(given: &Given, way: &Way<'_>, starts: &[Start], within: f64) -> Vec<bool> {
+    let begins = |start: &Start| matches!(start, Start::Underway { .. });
+    if !starts.iter().any(begins) {
+        return Vec::new();
+    }
+    let mut unsettled = vec![false; given.time.len()];
+    for (rows, _) in way.stretches().zip(starts).filter(|(_, start)| begins(start)) {
+        let last = given.time[rows.start] + within;
+        rows.filter(|row| given.time[*row] <= last).for_each(|row| unsettled[row] = true);
+    }
+    unsettled
 }
 
 /// The derivative in time by the parabola through each sample and its neighbours in the same leg; NaN samples are passed over.

@@ -136,6 +136,11 @@ impl<'a> Study<'a> {
         let mut channels = self.scenes.iter().flat_map(|scene| &scene.channels);
         channels.any(|channel| channel.kind == Kind::Drive(axis))
     }
+
+    /// Whether the command of an axis moves where a leg of a recording begins.
+    pub(crate) fn may_begin_underway(&self, axis: usize) -> bool {
+        self.scenes.iter().any(|scene| !scene.at_rest && scene.given.may_begin_underway(axis))
+    }
 }
 
 fn constants(equations: &Equations, calibration: Option<&Calibration>) -> Vec<f64> {

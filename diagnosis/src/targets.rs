@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use crate::candidates::geometric;
 use crate::noise::middle;
-use crate::position_loop::{PositionLoop, Stand};
+use crate::position_loop::{PositionLoop, Stand, Start};
 use crate::recording::{AxisChannels, Instrument, Recording};
 use crate::states::Given;
 use crate::way::Way;
@@ -133,11 +133,11 @@ impl<'p> Pair<'p> {
     /// Whether some loop without dead time explains the way.
     fn follows_a_loop(&self) -> bool {
         let way = Way::new(&self.given.time, self.command, &self.given.legs);
-        let starts: Vec<Option<Stand>> = way
-            .stretches()
-            .map(|rows| self.follows[rows.start])
-            .map(|position| position.is_finite().then_some(Stand { position, velocity: 0.0 }))
-            .collect();
+        let start = |position: f64| match position.is_finite() {
+            true => Start::At(Stand { position, velocity: 0.0 }),
+            false => Start::AtRest,
+        };
+        let starts: Vec<Start> = way.stretches().map(|rows| start(self.follows[rows.start])).collect();
         let whole = self.size(|row| self.follows[row] - self.command[row]);
         let (least, most, factor) = LOOPS;
         geometric(least * self.given.step, most * self.given.step, factor).into_iter().any(|time_constant| {

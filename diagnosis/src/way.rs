@@ -10,7 +10,7 @@ mod bends;
 use std::ops::Range;
 
 use crate::legs::stretches;
-use crate::position_loop::{Follower, Piece, PositionLoop, Stand};
+use crate::position_loop::{Follower, Piece, PositionLoop, Stand, Start};
 
 /// The way of one axis.
 pub(crate) struct Way<'w> {
@@ -91,12 +91,16 @@ impl<'w> Way<'w> {
         stretches(self.legs)
     }
 
-    /// Where the axis stands behind a loop, a clock's offset before each row; `starts` tells for each leg where it begins, at rest
-    /// on its command where nothing is said.
+    /// Velocity and acceleration of the command in the first of some rows; `None` where too few rows tell.
+    pub(crate) fn first_motion(&self, rows: Range<usize>) -> Option<(f64, f64)> {
+        bends::first_motion(&self.time[rows.clone()], &self.command[rows])
+    }
+
+    /// Where the axis stands behind a loop, a clock's offset before each row; `starts` tells for each leg how it begins.
     pub(crate) fn behind_loop(
         &self,
         position_loop: PositionLoop,
-        starts: &[Option<Stand>],
+        starts: &[Start],
         clock: f64,
     ) -> Vec<Stand> {
         let mut followed: Vec<Stand> = Vec::with_capacity(self.time.len());

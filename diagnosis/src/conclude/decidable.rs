@@ -188,6 +188,13 @@ pub(super) fn bent(study: &Study<'_>, model: &Model) -> Option<String> {
     })
 }
 
+/// What runs that begin underway leave open: a loop remembers how its axis moved before.
+pub(super) fn underway(model: &Model) -> Option<String> {
+    let sentence = "These recordings cannot show where an axis was when a run began, because it moved already. The first rows of such runs \
+        are left out until what its position loop remembers has faded. Runs that begin at rest would show it.";
+    model.underway().then(|| sentence.to_owned())
+}
+
 /// What a fault of a file leaves open.
 pub(super) fn since_when(change: &Change) -> String {
     format!(

@@ -92,7 +92,7 @@ impl<'s> Searched<'s> {
         };
         let mut drawn_before = drawn(&study, &bare);
         let (found, scattered) = search(&study, &bare.outliers, progress);
-        if found.fit.model.crosses() || found.fit.model.bends() {
+        if found.fit.model.moves_otherwise() {
             bare = bare_beside(&study, &bare, &found.fit.model);
             drawn_before = drawn(&study, &bare);
             study = returns::told(study, &bare.model, &bare.outliers);

@@ -28,6 +28,14 @@ fn velocity(time: &[f64], command: &[f64], legs: &[usize], row: usize) -> f64 {
     smoothest.map_or(f64::NAN, |cubic| cubic.velocity(time[row]))
 }
 
+/// Velocity and acceleration in the first of some rows by the cubic through the first of them; `None` of too few.
+pub(super) fn first_motion(time: &[f64], command: &[f64]) -> Option<(f64, f64)> {
+    let (time, command) = (time.get(..ROWS)?, command.get(..ROWS)?);
+    let cubic = Cubic::through(time, command);
+    let (velocity, acceleration) = (cubic.velocity(time[0]), cubic.acceleration(time[0]));
+    (velocity.is_finite() && acceleration.is_finite()).then_some((velocity, acceleration))
+}
+
 /// A cubic by Newton's divided differences.
 struct Cubic {
     times: [f64; ROWS - 1],
@@ -53,6 +61,10 @@ impl Cubic {
     fn velocity(&self, at: f64) -> f64 {
         let [a, b, c] = self.times.map(|time| at - time);
         self.speed + self.bend * (a + b) + self.jerk * (a * b + a * c + b * c)
+    }
+
+    fn acceleration(&self, at: f64) -> f64 {
+        2.0 * self.bend + 2.0 * self.jerk * self.times.map(|time| at - time).iter().sum::<f64>()
     }
 }
 

@@ -394,3 +394,48 @@ fn an_acceleration_stays_one_beside_a_command_that_bends_little() {
     let diagnosis = recorded_each(10, ", {acceleration: {gain: 20000 1/s^2}}");
     assert_eq!(found(&diagnosis), ["EXX lag", "EXX acceleration"]);
 }
+
+/// The diagnosis of a slide that goes to and fro behind its position loop, each run without its first `seconds`.
+fn cut_out(seconds: f64, truth: &str, known: &str) -> Diagnosis {
+    let bench = Bench::of("FX");
+    let stroke =
+        Path { acceleration: Some(500.0), runs: 4, pause: 0.5, ..path(line(0, 0.0, 120.0), 100.0, 250.0) };
+    let whole = bench.record(&bench.calibration(truth), &noisy(stroke, position("x"), 0.0005, 3));
+    let is_late =
+        |rows: &std::ops::Range<usize>, row: usize| whole.time[row] - whole.time[rows.start] >= seconds;
+    let late = |rows: std::ops::Range<usize>| -> Vec<usize> {
+        rows.clone().filter(|row| is_late(&rows, *row)).collect()
+    };
+    let rows: Vec<usize> = whole.runs().into_iter().flat_map(|(rows, _)| late(rows)).collect();
+    diagnosed(&bench, &bench.calibration(known), &[&of_rows(&whole, &rows)])
+}
+
+/// A run that was cut out of a motion begins v/K = 2.5 mm behind its command, and one out of an acceleration less. Had it begun at rest, it
+/// would fall back so far in its first rows: a jump that only comes at the beginning of a run. The slide gains speed for 0.2 s.
+#[test]
+fn a_run_that_is_cut_out_of_a_motion_shows_its_loop_and_nothing_else() {
+    for seconds in [0.1, 0.35] {
+        let diagnosis = cut_out(seconds, "{EXX: [{lag: {gain: 40 1/s}}]}", "{}");
+        assert_eq!(found(&diagnosis), ["EXX lag"], "{seconds}");
+        let gain = &numbers(&diagnosis.findings[0], "gain")[0];
+        assert!((gain.value - 40.0).abs() < 0.05, "{seconds}: {gain:?}");
+        let open = diagnosis.undecided.iter().any(|sentence| sentence.contains("it moved already"));
+        assert!(open, "{seconds}: {:?}", diagnosis.undecided);
+    }
+}
+
+#[test]
+fn a_known_loop_leaves_nothing_where_runs_are_cut_out_of_a_motion() {
+    let known = "{EXX: [{lag: {gain: 40 1/s}}]}";
+    let diagnosis = cut_out(0.1, known, known);
+    assert_eq!(diagnosis.findings.len(), 0, "{:?}", found(&diagnosis));
+    assert_eq!(diagnosis.verdict, Verdict::Adequate);
+}
+
+#[test]
+fn a_play_is_found_where_runs_are_cut_out_of_a_motion() {
+    let diagnosis = cut_out(0.35, "{EXX: [{lag: {gain: 40 1/s}}, {backlash: {lost_motion: 6 um}}]}", "{}");
+    let mut found = found(&diagnosis);
+    found.sort();
+    assert_eq!(found, ["EXX backlash", "EXX lag"]);
+}

@@ -133,7 +133,7 @@ fn concluded(
     }
     diagnosis.undecided.extend(crossed(&study, &found.fit.model));
     diagnosis.undecided.extend(bent(&study, &found.fit.model));
-    diagnosis.undecided.extend(underway(&found.fit.model));
+    diagnosis.undecided.extend(underway(&study, &found.fit.model));
     diagnosis.undecided.extend(diagnosis.model.iter().map(decidable::since_when));
     let moving =
         if feature.is_none() { unsteady::moving(&study, &found.appraisal, units.outside) } else { None };

@@ -266,6 +266,7 @@ fn taken_from_walk(study: &Study<'_>, stands: &Appraisal, other: &(Fit, Appraisa
     as_fitted.max(judge::worth_in(study, model, &floors, &effects))
 }
 
+/// Whether two models have effects of the same kinds at the same places, and axes that are driven alike.
 fn same_effects(a: &Model, b: &Model) -> bool {
     let inert = |fitted: &Fitted| matches!(fitted.effect.shape, Shape::Lag { inertia, .. } if inertia > 0.0);
     let answered = |fitted: &Fitted| fitted.effect.side().and_then(Side::answered_by);

@@ -7,10 +7,12 @@ use super::units::unit_at;
 use crate::answers::answers;
 use crate::channel::Channel;
 use crate::coarse::Coarse;
+use crate::course;
 use crate::crossing;
 use crate::diagnosis::Change;
 use crate::model::Model;
 use crate::parameters::{angle_unit, axis_unit};
+use crate::position_loop::PositionLoop;
 use crate::recording::{Turned, taken_as_free};
 use crate::repeats::{self, Scatter};
 use crate::report::figure::{significant, size};
@@ -189,10 +191,11 @@ pub(super) fn bent(study: &Study<'_>, model: &Model) -> Option<String> {
 }
 
 /// What runs that begin underway leave open: a loop remembers how its axis moved before.
-pub(super) fn underway(model: &Model) -> Option<String> {
+pub(super) fn underway(study: &Study<'_>, model: &Model) -> Option<String> {
+    let follows = course::loops(study, model).into_iter().any(PositionLoop::acts);
     let sentence = "These recordings cannot show where an axis was when a run began, because it moved already. The first rows of such runs \
         are left out until what its position loop remembers has faded. Runs that begin at rest would show it.";
-    model.underway().then(|| sentence.to_owned())
+    (model.underway() && follows).then(|| sentence.to_owned())
 }
 
 /// What a fault of a file leaves open.

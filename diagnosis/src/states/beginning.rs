@@ -54,9 +54,8 @@ impl Leg<'_> {
     fn first_reading(&self) -> Option<Stand> {
         let first = *self.actual.first().filter(|first| first.is_finite())?;
         let (mut moved, mut squares) = (0.0, 0.0);
-        for row in (0..self.rows_within(self.driven.position_loop.time_constant))
-            .filter(|row| self.actual[*row].is_finite())
-        {
+        let rows = self.rows_within(self.driven.position_loop.time_constant);
+        for row in (0..rows).filter(|row| self.actual[*row].is_finite()) {
             let since = self.time[row] - self.time[0];
             moved += since * (self.actual[row] - first);
             squares += since * since;

@@ -66,17 +66,44 @@ fn looped(study: &Study<'_>, kept: &Model, known: &Model, conditions: &Condition
     geometric(0.5 * step, (40.0 * step).min(0.3), 2.0).into_iter().map(trial).collect()
 }
 
-/// Tries what a first-order loop, and what acts at once, cannot say: runs that begin underway, commands that bend between rows, loops that
-/// ring, and friction on the drive, which the loop answers.
-pub(crate) fn try_drives(study: &Study<'_>, model: Model, conditions: &Conditions<'_>) -> Model {
-    let (underway, bent) = (underway(study, &model), bent(study, &model));
-    let is_plain = underway.is_empty() && bent.is_none();
-    if is_plain && !model.chosen().iter().any(|fitted| lag_of(&fitted.effect.shape).is_some()) {
+/// Tries runs that begin underway, where a loop remembers how its axis moved before. What imitates such a beginning is taken out only where
+/// the beginning itself costs less: a loop may stand for nothing but a slow change in the first rows.
+pub(crate) fn try_underway(study: &Study<'_>, model: Model, conditions: &Conditions<'_>) -> Model {
+    if !may_begin_underway(study, &model) {
         return model;
     }
     let now = conditions.refine(study, model);
-    let trials = underway.into_iter().chain(bent).map(|trial| conditions.refine(study, trial));
-    let mut best = conditions.cheapest(study, now, trials);
+    let underway = conditions.refine(study, now.model.clone().begun_underway());
+    let best = conditions.cheapest(study, now, [underway]);
+    if !best.model.underway() {
+        return best.model;
+    }
+    let bare = best.model.keeping(|fitted| !imitates_beginning(&fitted.effect));
+    let bare = conditions.refine(study, bare);
+    conditions.cheapest(study, best, [bare]).model
+}
+
+/// Whether an axis without feedback follows a loop and may move where a run begins, and no model says so yet.
+fn may_begin_underway(study: &Study<'_>, model: &Model) -> bool {
+    let loops = course::loops(study, model);
+    let is_hidden = |axis: &usize| loops[*axis].acts() && !study.has_drive(*axis);
+    !model.underway() && (0..loops.len()).filter(is_hidden).any(|axis| study.may_begin_underway(axis))
+}
+
+/// Whether an effect may be what a run that begins underway leaves beside a loop that begins at rest: a change in its first rows.
+fn imitates_beginning(effect: &Effect) -> bool {
+    imitates_ringing(effect) || matches!(effect.shape, Shape::Backlash { .. } | Shape::Step { .. })
+}
+
+/// Tries what a first-order loop, and what acts at once, cannot say: commands that bend between rows, loops that ring, and friction on the
+/// drive, which the loop answers.
+pub(crate) fn try_drives(study: &Study<'_>, model: Model, conditions: &Conditions<'_>) -> Model {
+    let bent = bent(study, &model);
+    if bent.is_none() && !model.chosen().iter().any(|fitted| lag_of(&fitted.effect.shape).is_some()) {
+        return model;
+    }
+    let now = conditions.refine(study, model);
+    let mut best = conditions.cheapest(study, now, bent.map(|trial| conditions.refine(study, trial)));
     for axis in 0..study.own.len() {
         let Some(held) = best.model.chosen().iter().find(|fitted| lag_of(&fitted.effect.shape) == Some(axis))
         else {
@@ -87,25 +114,6 @@ pub(crate) fn try_drives(study: &Study<'_>, model: Model, conditions: &Condition
         best = conditions.cheapest(study, best, trials.map(|trial| conditions.refine(study, trial)));
     }
     best.model
-}
-
-/// A model whose runs begin underway, with and without what imitates that: a run that is cut out of a motion begins behind its command, where
-/// one that begins at rest would come to. None where every axis behind a loop begins at rest or has feedback, which tells.
-fn underway(study: &Study<'_>, model: &Model) -> Vec<Model> {
-    let loops = course::loops(study, model);
-    let any = || {
-        let is_hidden = |axis: &usize| loops[*axis].acts() && !study.has_drive(*axis);
-        (0..loops.len()).filter(is_hidden).any(|axis| study.may_begin_underway(axis))
-    };
-    if model.underway() || !any() {
-        return Vec::new();
-    }
-    let imitates = |fitted: &Fitted| {
-        let effect = &fitted.effect;
-        imitates_ringing(effect) || matches!(effect.shape, Shape::Backlash { .. } | Shape::Step { .. })
-    };
-    let bare = model.keeping(|fitted| !imitates(fitted));
-    [model.clone(), bare].map(Model::begun_underway).into()
 }
 
 /// A model with commands that bend between rows in the place of the accelerations of axes behind their loops; `None` where there are none.

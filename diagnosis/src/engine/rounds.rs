@@ -140,6 +140,7 @@ impl Search {
             let mut settled = same_effects(&self.model, &next);
             if settled || round + 1 == ROUNDS {
                 next = dynamics::try_loops(study, next, &self.conditions());
+                next = dynamics::try_underway(study, next, &self.conditions());
                 next = dynamics::try_drives(study, next, &self.conditions());
                 settled = same_effects(&self.model, &next);
             } else if round > 0 && dynamics::may_answer(&next) {

@@ -77,10 +77,12 @@ impl Given {
 }
 
 impl Given {
-    /// Whether the command of an axis moves where a leg begins.
+    /// Whether the command of an axis moves where a leg begins, and changes its speed. Behind a command of one speed nothing shows a loop but
+    /// a beginning at rest: underway it only moves the zero.
     pub(crate) fn may_begin_underway(&self, axis: usize) -> bool {
         let way = Way::new(&self.time, &self.programmed[axis], &self.legs);
-        way.stretches().any(|rows| matches!(beginning::underway(&way, rows), Start::Underway { .. }))
+        way.changes_speed()
+            && way.stretches().any(|rows| matches!(beginning::underway(&way, rows), Start::Underway { .. }))
     }
 }
 

@@ -38,10 +38,21 @@ impl<'w> Way<'w> {
     /// The way of a programmed axis.
     pub(crate) fn new(time: &'w [f64], command: &'w [f64], legs: &'w [usize]) -> Self {
         let mut way = Self { time, command, legs, fastest: 0.0, accelerations: Vec::new() };
-        let driven = (1..time.len()).filter(|row| legs[*row] == legs[*row - 1]);
-        let speeds = driven.map(|row| way.chord(row - 1).1.abs());
-        way.fastest = speeds.filter(|speed| speed.is_finite()).fold(0.0, f64::max);
+        way.fastest = way.velocities().map(f64::abs).fold(0.0, f64::max);
         way
+    }
+
+    /// The velocity in each step within a leg, where it is known.
+    fn velocities(&self) -> impl Iterator<Item = f64> {
+        let driven = (1..self.time.len()).filter(|row| self.legs[*row] == self.legs[*row - 1]);
+        driven.map(|row| self.chord(row - 1).1).filter(|velocity| velocity.is_finite())
+    }
+
+    /// Whether the velocity is not the same everywhere: a reversal is the largest change.
+    pub(crate) fn changes_speed(&self) -> bool {
+        let ends = |(low, high): (f64, f64), velocity: f64| (low.min(velocity), high.max(velocity));
+        let (low, high) = self.velocities().fold((f64::INFINITY, f64::NEG_INFINITY), ends);
+        high - low > CORNER * self.fastest
     }
 
     /// The same way where the command bends between rows, for a loop that follows it.

@@ -448,3 +448,47 @@ fn an_axis_begins_away_from_its_command_where_its_way_back_is_seen() {
     }
     assert!(distance(&shown(&|_| -0.4), &at_rest) < 1e-12);
 }
+
+/// Rows of a tenth of a second, in which an axis goes so fast.
+fn given(velocity: impl Fn(f64) -> f64) -> Given {
+    let time: Vec<f64> = (0..100).map(|row| 0.1 * f64::from(row)).collect();
+    let steps = time.iter().scan(0.0, |position, t| {
+        let here = *position;
+        *position += 0.1 * velocity(*t);
+        Some(here)
+    });
+    let recording = programmed(&time, &[steps.collect()]);
+    Given::new(&recording, Vec::new(), Vec::new())
+}
+
+/// Of an axis that keeps its speed a loop is only seen where it begins at rest.
+#[test]
+fn an_axis_may_begin_underway_where_it_moves_at_first_and_changes_its_speed() {
+    let later = |t: f64| if t < 5.0 { 2.0 } else { -2.0 };
+    for (is_underway, velocity) in [
+        (true, &later as &dyn Fn(f64) -> f64),
+        (true, &|t| 2.0 + t),
+        (false, &|_| 2.0),
+        (false, &|t| if t < 1.0 { 0.0 } else { 2.0 }),
+    ] {
+        assert_eq!(given(velocity).may_begin_underway(0), is_underway);
+    }
+}
+
+/// The rows within five time constants of such a beginning do not count.
+#[test]
+fn an_axis_that_begins_underway_is_unsettled_until_its_loop_has_forgotten() {
+    let given = given(|t| if t < 5.0 { 2.0 } else { -2.0 });
+    let recording = programmed(&given.time, &[given.programmed[0].to_vec()]);
+    let states = |underway: bool| {
+        let driven = Driven { underway, ..behind(0.21) };
+        States::new(&recording, &given, &[driven], 0.0)
+    };
+    let unsettled = |states: &States| (0..100).filter(|row| states.is_unsettled(*row)).collect::<Vec<_>>();
+    assert_eq!(unsettled(&states(false)), Vec::<usize>::new());
+    let underway = states(true);
+    assert_eq!(unsettled(&underway), (0..11).collect::<Vec<_>>());
+    // It begins behind its command by the time constant times the speed, and stays there.
+    let command = &given.programmed[0];
+    assert!((0..50).all(|row| (command[row] - underway.axes[0].position[row] - 0.42).abs() < 1e-9));
+}

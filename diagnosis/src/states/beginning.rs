@@ -71,10 +71,10 @@ impl Leg<'_> {
         self.missed(Start::At(stand)) <= UNSEEN * self.missed(Start::AtRest)
     }
 
-    /// What the way from a start leaves of the rows behind the first until the loop has settled: the sum of squares.
+    /// What the way from a start leaves of the rows behind the first, while it shows: the sum of squares.
     fn missed(&self, start: Start) -> f64 {
         let mut follower = Follower::from(start);
-        let left = (0..self.rows_within(self.driven.position_loop.settling())).map(|row| {
+        let left = (0..self.rows_within(SEEN * self.driven.position_loop.time_constant)).map(|row| {
             let stand = self.way.follow(self.driven.position_loop, &mut follower, self.first + row);
             self.actual[row] - self.driven.zero - stand.position
         });
@@ -86,6 +86,10 @@ impl Leg<'_> {
         self.time.iter().take_while(|at| **at - self.time[0] <= within).count()
     }
 }
+
+/// For so many time constants of its gain the way from elsewhere shows: the window of the sweep below. A loop that rings has not settled
+/// then; later on its drive shows other things too.
+const SEEN: f64 = 5.0;
 
 /// The share of the squares beside a start at rest that the way from elsewhere may leave. Taken for such a way, a constant leaves 0.7 and
 /// a vibration of whatever frequency and phase 0.25 at least, sampled at any step: e^-x for sin(w x + p) over five time constants, by a

@@ -10,6 +10,8 @@
 //! Two models are compared by their likelihoods, each with the noise that suits it best: an effect that a wandering sensor
 //! explains as well is then worth nothing.
 
+use std::sync::OnceLock;
+
 use crate::channel::ChannelAt;
 use crate::course::Course;
 use crate::model::Model;
@@ -39,6 +41,9 @@ pub(crate) struct Appraisal {
     pub(crate) leftover: Vec<Vec<f64>>,
     /// Minus twice the log-likelihood of all channels.
     pub(crate) deviance: f64,
+    /// The same of each channel, and where its noise is flicker, if that was asked for.
+    deviances: Vec<Vec<f64>>,
+    flickers: OnceLock<Vec<Vec<Option<f64>>>>,
     /// The same where what never comes back is a noise that wanders, whatever the weights.
     pub(crate) wandering: f64,
 }
@@ -106,9 +111,53 @@ impl Appraisal {
             floors: each(estimates, |estimate| estimate.floor),
             returning: each(estimates, |estimate| estimate.returning),
             leftover: each(estimates, |estimate| estimate.leftover),
+            flickers: OnceLock::new(),
+            deviances: each(estimates, |estimate| estimate.deviance),
             deviance: estimates.iter().flatten().map(|estimate| estimate.deviance).sum(),
             wandering: estimates.iter().flatten().map(|estimate| estimate.wandering).sum(),
         }
+    }
+
+    /// By how much the deviance of this model lies above that of a richer one, where the noise of a channel is flicker if that is likelier
+    /// beside the richer one; `None` where it is so nowhere.
+    pub(crate) fn above_in_flicker(&self, study: &Study<'_>, richer: &Self) -> Option<f64> {
+        let flickers = richer.flickers(study);
+        flickers.iter().flatten().any(Option::is_some).then(|| {
+            let of_channel = |at: ChannelAt| {
+                let known = |appraisal: &Self| appraisal.deviances[at.scene][at.channel];
+                match flickers[at.scene][at.channel] {
+                    Some(flicker) => self.flicker(study, at).min(known(self)) - flicker,
+                    None => known(self) - known(richer),
+                }
+            };
+            study.channels().map(of_channel).sum()
+        })
+    }
+
+    /// Minus twice the log-likelihood of every channel whose noise may be flicker: it wanders, and flicker is not much less likely.
+    fn flickers(&self, study: &Study<'_>) -> &[Vec<Option<f64>>] {
+        self.flickers.get_or_init(|| {
+            let of_channel = |scene: usize, channel: usize| {
+                let at = ChannelAt { scene, channel };
+                let weights = self.weights.noise(at);
+                let price = if weights.wander == 0.0 { noise::WORTH } else { -noise::WORTH };
+                let flicker = (weights.alike == 1.0).then(|| self.flicker(study, at));
+                flicker.filter(|flicker| *flicker < self.deviances[scene][channel] - price)
+            };
+            let of_scene = |(scene, residuals): (usize, &Vec<Vec<f64>>)| {
+                (0..residuals.len()).map(|channel| of_channel(scene, channel)).collect()
+            };
+            self.residuals.iter().enumerate().map(of_scene).collect()
+        })
+    }
+
+    /// Minus twice the log-likelihood of a channel whose noise is flicker.
+    fn flicker(&self, study: &Study<'_>, at: ChannelAt) -> f64 {
+        let (scene, outliers) = (&study.scenes[at.scene], self.weights.outliers.of(at));
+        let (fitted, residual) = (scene.fitted_rows(), &self.residuals[at.scene][at.channel]);
+        let counts = |row: usize| fitted[row] && residual[row].is_finite() && !outliers[row];
+        let valid: Vec<bool> = (0..residual.len()).map(counts).collect();
+        noise::flicker(&scene.recording.time, residual, &valid, scene.channels[at.channel].rounding)
     }
 
     /// Whether a model leaves more than noise of any channel.

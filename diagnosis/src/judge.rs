@@ -271,15 +271,17 @@ fn noise_explains(
     }
     let bare = Appraisal::beside(study, &without, appraisal);
     // A walk draws any curve along a single pass. It knows nothing of reversals, speeds and temperatures.
-    let curve = matches!(shape, Shape::Polynomial { .. } | Shape::Table { .. });
-    let rise = if curve {
+    if matches!(shape, Shape::Polynomial { .. } | Shape::Table { .. }) {
         // Both are less than the fit of greatest likelihood would give: the one keeps the coefficients, the other the noise.
         let floors = appraisal.weights.beside(bare.floors);
-        (bare.wandering - appraisal.wandering).max(worth_in(study, &fit.model, &floors, &[number]))
-    } else {
-        bare.deviance - appraisal.deviance
-    };
-    rise < price
+        let worth = worth_in(study, &fit.model, &floors, &[number]);
+        return (bare.wandering - appraisal.wandering).max(worth) < price;
+    }
+    if bare.deviance - appraisal.deviance < price {
+        return true;
+    }
+    // A wave has one frequency. There flicker is as strong as any noise that leaves the same around it.
+    !shape.is_wave() && bare.above_in_flicker(study, appraisal).is_some_and(|rise| rise < price)
 }
 
 /// What effects of a model take together from minus twice the log-likelihood where samples weigh so.

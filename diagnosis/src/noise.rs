@@ -4,6 +4,7 @@
 //! Ornstein-Uhlenbeck process: exponentially correlated, up to a random walk), and the filter that makes such noise white.
 //! Generalised least squares is ordinary least squares behind that filter.
 
+mod flicker;
 mod likelihood;
 mod simplex;
 
@@ -214,6 +215,13 @@ pub(crate) fn deviance(time: &[f64], residual: &[f64], valid: &[bool], noise: &N
     each.map(|(step, white)| white * white - 2.0 * step.weight.ln()).sum::<f64>() / noise.alike
 }
 
+/// The same where that noise is flicker beside white noise, as likely as can be; infinite where it would be finer than the rounding of the
+/// data, `floor`, allows.
+pub(crate) fn flicker(time: &[f64], residual: &[f64], valid: &[bool], floor: f64) -> f64 {
+    let (deviance, white) = flicker::deviance(time, residual, valid);
+    if white < floor { f64::INFINITY } else { deviance }
+}
+
 /// How many samples in a row of a residual count for one: its autocorrelation summed up to where it changes its sign.
 pub(crate) fn alike(residual: &[f64], valid: &[bool]) -> f64 {
     let known: Vec<f64> =
@@ -321,7 +329,7 @@ const STRETCH: f64 = 0.05;
 
 /// How much the wandering must lower minus twice the log-likelihood: chance does it with two more parameters in one of a
 /// hundred cases.
-const WORTH: f64 = 9.2;
+pub(crate) const WORTH: f64 = 9.2;
 
 /// The standard deviation of the fast part of a residual: from the median difference of neighbouring samples.
 pub(crate) fn from_differences(residual: &[f64]) -> f64 {

@@ -296,6 +296,19 @@ pub(crate) fn normals(seed: u64, count: usize) -> Vec<f64> {
     (0..count).map(|_| source.normal()).collect()
 }
 
+/// Flicker noise, 1/f at every frequency, of a seed: the half integral of white noise (Hosking, Fractional differencing, 1981).
+pub(crate) fn flicker(seed: u64, count: usize) -> Vec<f64> {
+    let white = normals(seed, count);
+    let next = |response: &mut f64, lag: u32| {
+        let now = *response;
+        *response *= 1.0 - 0.5 / f64::from(lag);
+        Some(now)
+    };
+    let response: Vec<f64> = (1..).take(count).scan(1.0, next).collect();
+    let at = |row: usize| (0..=row).map(|lag| response[lag] * white[row - lag]).sum();
+    (0..count).map(at).collect()
+}
+
 /// Times that go forward by uneven steps about `step`, s.
 pub(crate) fn uneven(seed: u64, count: usize, step: f64) -> Vec<f64> {
     let mut source = Source::new(seed, "times");

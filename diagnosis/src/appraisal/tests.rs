@@ -4,7 +4,7 @@ use super::*;
 use crate::model::{Effect, Fitted};
 use crate::recording::Recording;
 use crate::terms::Setting;
-use crate::testing::{Bench, line, noisy, path, position};
+use crate::testing::{Bench, flicker, line, noisy, path, position};
 
 fn stage(bench: &Bench, errors: &str, noise: f64, seed: u64) -> Recording {
     let strokes = simulation::Path { runs: 3, ..path(line(0, 0.0, 300.0), 20.0, 8.0) };
@@ -41,4 +41,20 @@ fn recordings_of_one_channel_share_a_weight_where_one_of_them_lacks_something() 
     assert_eq!(one.white, other.white);
     assert!((one.white - 0.02 / 24f64.sqrt()).abs() < 4e-4, "{one:?}");
     assert!(one.alike > 1.0 && other.alike > 1.0);
+}
+
+#[test]
+fn flicker_is_asked_where_the_noise_may_be_flicker() {
+    let bench = Bench::of("FX");
+    let mut recording = stage(&bench, "{}", 2e-4, 1);
+    let above = |recording: &Recording| {
+        let study = Study::new(bench.equations(), None, &[recording]);
+        let appraisal = Appraisal::new(&study, &Model::default());
+        appraisal.above_in_flicker(&study, &appraisal)
+    };
+    assert_eq!(above(&recording), None);
+    let measured = recording.measured.iter_mut().flatten().next().unwrap();
+    let noise = flicker(5, measured.len());
+    measured.iter_mut().zip(noise).for_each(|(value, noise)| *value += 1e-3 * noise);
+    assert_eq!(above(&recording), Some(0.0), "a model lies nowhere above itself");
 }

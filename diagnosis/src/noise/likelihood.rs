@@ -21,7 +21,8 @@ pub(super) fn deviances<const N: usize>(
         filters.come(*time);
         if *valid {
             filters.take();
-            sums.add(&mut filters, *value);
+            let new = filters.new_in(*value);
+            sums.add(new, filters.weight);
         } else {
             filters.pass();
         }
@@ -104,6 +105,15 @@ impl<const N: usize> Filters<N> {
         self.settled = before == self.variance;
     }
 
+    /// What is new in a sample, which goes into the states.
+    fn new_in(&mut self, value: f64) -> [f64; N] {
+        let new = self.state.map(|state| value - state);
+        for (state, (gain, new)) in self.state.iter_mut().zip(self.gain.iter().zip(&new)) {
+            *state += gain * new;
+        }
+        new
+    }
+
     fn grown(&self, lane: usize) -> f64 {
         let stationary = self.noises[lane].wander * self.noises[lane].wander;
         let decay = self.decay[lane];
@@ -117,7 +127,7 @@ fn decays<const N: usize>(noises: &[Noise; N], step: f64) -> [f64; N] {
 }
 
 /// What adds up to likelihoods.
-struct Sums<const N: usize> {
+pub(super) struct Sums<const N: usize> {
     squares: [f64; N],
     /// Of weights: one logarithm for many factors, as long as their product is far from both ends of the numbers.
     product: [f64; N],
@@ -126,18 +136,16 @@ struct Sums<const N: usize> {
 }
 
 impl<const N: usize> Sums<N> {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self { squares: [0.0; N], product: [1.0; N], logs: [0.0; N], count: 0.0 }
     }
 
-    /// Adds a sample, which goes into the states of the filters.
-    fn add(&mut self, filters: &mut Filters<N>, value: f64) {
+    /// Adds what is new in a sample under each noise, and 1 / standard deviation of that.
+    pub(super) fn add(&mut self, new: [f64; N], weight: [f64; N]) {
         self.count += 1.0;
         for lane in 0..N {
-            let new = value - filters.state[lane];
-            filters.state[lane] += filters.gain[lane] * new;
-            self.squares[lane] += new * new * filters.weight[lane] * filters.weight[lane];
-            self.product[lane] *= filters.weight[lane];
+            self.squares[lane] += new[lane] * new[lane] * weight[lane] * weight[lane];
+            self.product[lane] *= weight[lane];
         }
         for lane in 0..N {
             if !(1e-100..1e100).contains(&self.product[lane]) {
@@ -151,7 +159,8 @@ impl<const N: usize> Sums<N> {
         self.product[lane] = 1.0;
     }
 
-    fn deviances(mut self) -> [(f64, f64); N] {
+    /// Minus twice the log-likelihood under each noise, its scale concentrated out, and that scale (a variance).
+    pub(super) fn deviances(mut self) -> [(f64, f64); N] {
         std::array::from_fn(|lane| {
             self.take_logarithm(lane);
             let scale = (self.squares[lane] / self.count).max(f64::MIN_POSITIVE);

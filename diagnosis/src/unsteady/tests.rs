@@ -10,6 +10,7 @@ use crate::conditions::Tries;
 use crate::course::courses;
 use crate::fit;
 use crate::kinship;
+use crate::model::Model;
 use crate::noise::Noise;
 use crate::recording::Recording;
 use crate::side::Side;
@@ -368,15 +369,10 @@ fn the_largest_channel_that_moves_is_named_and_outliers_do_not_hide_it() {
         vec![normals(9, rows).iter().map(|value| 10.0 * value).collect(); channels];
     residuals[0] = smooth.iter().map(|value| 0.5 * value).collect();
     let noises = vec![vec![Noise::white(1.0); channels]];
-    let mut appraisal = Appraisal {
-        residuals: vec![residuals],
-        floors: noises.clone(),
-        weights: Weights::of_all(&study, noises),
-        returning: Vec::new(),
-        leftover: Vec::new(),
-        deviance: 0.0,
-        wandering: 0.0,
-    };
+    let mut appraisal = Appraisal::new(&study, &Model::default());
+    appraisal.residuals = vec![residuals];
+    appraisal.floors.clone_from(&noises);
+    appraisal.weights = Weights::of_all(&study, noises);
     // The larger channel is white.
     assert_eq!(moving(&study, &appraisal, true).unwrap().at.channel, 0);
     appraisal.residuals[0][1] = smooth.clone();

@@ -118,15 +118,15 @@ impl Appraisal {
         }
     }
 
-    /// By how much the deviance of this model lies above that of a richer one, where the noise of a channel is flicker if that is likelier
-    /// beside the richer one; `None` where it is so nowhere.
+    /// By how much the deviance of this model lies above that of a richer one, where the noise of a channel is flicker if it may be so
+    /// beside the richer one; `None` where it may be so nowhere.
     pub(crate) fn above_in_flicker(&self, study: &Study<'_>, richer: &Self) -> Option<f64> {
         let flickers = richer.flickers(study);
         flickers.iter().flatten().any(Option::is_some).then(|| {
             let of_channel = |at: ChannelAt| {
                 let known = |appraisal: &Self| appraisal.deviances[at.scene][at.channel];
                 match flickers[at.scene][at.channel] {
-                    Some(flicker) => self.flicker(study, at).min(known(self)) - flicker,
+                    Some(flicker) => self.flicker(study, at) - flicker,
                     None => known(self) - known(richer),
                 }
             };

@@ -280,7 +280,7 @@ fn noise_explains(
     if bare.deviance - appraisal.deviance < price {
         return true;
     }
-    // A wave has one frequency. There flicker is as strong as any noise that leaves the same around it.
+    // A wave has one frequency. Both noises are fitted to the residual, so they are about equally strong there.
     !shape.is_wave() && bare.above_in_flicker(study, appraisal).is_some_and(|rise| rise < price)
 }
 

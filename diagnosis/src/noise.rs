@@ -2,7 +2,7 @@
 //!
 //! In: the residual of a channel, with times and gaps. Out: its noise as white noise and a wandering (an
 //! Ornstein-Uhlenbeck process: exponentially correlated, up to a random walk), and the filter that makes such noise white.
-//! Generalised least squares is ordinary least squares behind that filter.
+//! Generalised least squares is ordinary least squares behind that filter. How likely the residual is as flicker noise is asked apart.
 
 mod flicker;
 mod likelihood;

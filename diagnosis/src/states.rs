@@ -76,16 +76,6 @@ impl Given {
     }
 }
 
-impl Given {
-    /// Whether the command of an axis moves where a leg begins, and changes its speed. Behind a command of one speed nothing shows a loop but
-    /// a beginning at rest: underway it only moves the zero.
-    pub(crate) fn may_begin_underway(&self, axis: usize) -> bool {
-        let way = Way::new(&self.time, &self.programmed[axis], &self.legs);
-        way.changes_speed()
-            && way.stretches().any(|rows| matches!(beginning::underway(&way, rows), Start::Underway { .. }))
-    }
-}
-
 /// How an axis is driven.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Driven {
@@ -470,23 +460,9 @@ fn behind_loop(
         position_loop: driven.position_loop,
         lag_slope,
         inertia_slope,
-        unsettled: unsettled(given, way, starts, driven.position_loop.settling()),
+        unsettled: beginning::unsettled(given, way, starts, driven.position_loop.settling()),
         moves,
     }
-}
-
-/// The rows within a time, s, from the beginning of each leg that begins underway: how the axis moved before is not known.
-fn unsettled(given: &Given, way: &Way<'_>, starts: &[Start], within: f64) -> Vec<bool> {
-    let begins = |start: &Start| matches!(start, Start::Underway { .. });
-    if !starts.iter().any(begins) {
-        return Vec::new();
-    }
-    let mut unsettled = vec![false; given.time.len()];
-    for (rows, _) in way.stretches().zip(starts).filter(|(_, start)| begins(start)) {
-        let last = given.time[rows.start] + within;
-        rows.filter(|row| given.time[*row] <= last).for_each(|row| unsettled[row] = true);
-    }
-    unsettled
 }
 
 /// The derivative in time by the parabola through each sample and its neighbours in the same leg; NaN samples are passed over.

@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use super::Driven;
+use super::{Driven, Given};
 use crate::position_loop::{Follower, Stand, Start};
 use crate::recording::AxisChannels;
 use crate::way::Way;
@@ -43,6 +43,30 @@ pub(super) fn beginning(
 pub(super) fn underway(way: &Way<'_>, rows: Range<usize>) -> Start {
     let first = way.first_motion(rows).filter(|(velocity, _)| velocity.abs() > AWAY * way.fastest());
     first.map_or(Start::AtRest, |(velocity, acceleration)| Start::Underway { velocity, acceleration })
+}
+
+/// The rows within a time, s, from the beginning of each leg that begins underway: how the axis moved before is not known.
+pub(super) fn unsettled(given: &Given, way: &Way<'_>, starts: &[Start], within: f64) -> Vec<bool> {
+    let begins = |start: &Start| matches!(start, Start::Underway { .. });
+    if !starts.iter().any(begins) {
+        return Vec::new();
+    }
+    let mut unsettled = vec![false; given.time.len()];
+    for (rows, _) in way.stretches().zip(starts).filter(|(_, start)| begins(start)) {
+        let last = given.time[rows.start] + within;
+        rows.filter(|row| given.time[*row] <= last).for_each(|row| unsettled[row] = true);
+    }
+    unsettled
+}
+
+impl Given {
+    /// Whether the command of an axis moves where a leg begins, and changes its speed. Behind a command of one speed nothing shows a loop but
+    /// a beginning at rest: underway it only moves the zero.
+    pub(crate) fn may_begin_underway(&self, axis: usize) -> bool {
+        let way = Way::new(&self.time, &self.programmed[axis], &self.legs);
+        way.changes_speed()
+            && way.stretches().any(|rows| matches!(underway(&way, rows), Start::Underway { .. }))
+    }
 }
 
 /// The share of the lag at the highest speed beyond which an axis does not begin at rest: it is further from its command than friction
@@ -87,8 +111,8 @@ impl Leg<'_> {
     }
 }
 
-/// For so many time constants of its gain the way from elsewhere shows: the window of the sweep below. A loop that rings has not settled
-/// then; later on its drive shows other things too.
+/// The way from elsewhere is looked for in the first time constants of the loop's gain: the window of the sweep below. A loop that rings
+/// has not settled by then, but later rows of its drive show other effects too.
 const SEEN: f64 = 5.0;
 
 /// The share of the squares beside a start at rest that the way from elsewhere may leave. Taken for such a way, a constant leaves 0.7 and

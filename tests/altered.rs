@@ -1,5 +1,5 @@
 //! Recordings that were altered as no machine would notice. In: a recording beside the repository, where it is, with positive and negative
-//! exchanged, or without its beginning. Out: the effects that it has as it stands.
+//! exchanged, with a part of its runs, or without its beginning. Out: the effects that it has as it stands.
 
 use std::fs;
 use std::path::PathBuf;
@@ -49,6 +49,13 @@ fn begun_later(_: &str, rows: Vec<&str>) -> Vec<String> {
     rows[rows.len() / 5..].iter().map(|row| (*row).to_owned()).collect()
 }
 
+/// The first three runs in a mirror: as many show what all of them show.
+fn three_mirrored(head: &str, rows: Vec<&str>) -> Vec<String> {
+    let run = head.split(',').position(|name| name == "run").unwrap();
+    let first = |row: &&str| ["1", "2", "3"].contains(&row.split(',').nth(run).unwrap());
+    mirrored(head, rows.into_iter().filter(first).collect())
+}
+
 fn value(finding: &Value, parameter: &str) -> f64 {
     finding["parameters"][parameter]["value"].as_f64().unwrap()
 }
@@ -56,7 +63,7 @@ fn value(finding: &Value, parameter: &str) -> f64 {
 /// A wave of 0.25 mm and its harmonics, twice along the travel: a table would do as well, and say nothing of the next turn.
 #[test]
 fn the_wave_of_a_slit_is_a_wave_in_a_mirror_too() {
-    let Some(findings) = findings("slit-11358-pos20", mirrored) else { return };
+    let Some(findings) = findings("slit-11358-pos20", three_mirrored) else { return };
     assert!(findings.iter().all(|finding| finding["term"] != "table"), "{findings:#?}");
     let wave = findings.iter().find(|finding| finding["term"] == "cyclic").unwrap();
     assert!((value(wave, "period") - 0.25).abs() < 0.0025, "{wave:#}");

@@ -43,8 +43,7 @@ fn any_number_of_processors_says_the_same() {
     for recording in ["recordings/postech-ballbar/recording.yaml", &two_channels(&folder)] {
         let alone = said(recording, "1");
         assert!(alone.contains("\"findings\""), "{alone}");
-        for processors in ["2", "5"] {
-            assert_eq!(said(recording, processors), alone, "{recording}, {processors} processors");
-        }
+        // Three share few numbers of jobs evenly, so that some of them are done in another order.
+        assert_eq!(said(recording, "3"), alone, "{recording}");
     }
 }

@@ -49,7 +49,7 @@ fn begun_later(_: &str, rows: Vec<&str>) -> Vec<String> {
     rows[rows.len() / 5..].iter().map(|row| (*row).to_owned()).collect()
 }
 
-/// The first three runs in a mirror: as many show what all of them show.
+/// The first three runs in a mirror: they show a wave and its harmonics as all runs do, in a quarter of the time.
 fn three_mirrored(head: &str, rows: Vec<&str>) -> Vec<String> {
     let run = head.split(',').position(|name| name == "run").unwrap();
     let first = |row: &&str| ["1", "2", "3"].contains(&row.split(',').nth(run).unwrap());

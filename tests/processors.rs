@@ -43,7 +43,7 @@ fn any_number_of_processors_says_the_same() {
     for recording in ["recordings/postech-ballbar/recording.yaml", &two_channels(&folder)] {
         let alone = said(recording, "1");
         assert!(alone.contains("\"findings\""), "{alone}");
-        // Three share few numbers of jobs evenly, so that some of them are done in another order.
+        // Three processors rarely get equal shares of the jobs.
         assert_eq!(said(recording, "3"), alone, "{recording}");
     }
 }

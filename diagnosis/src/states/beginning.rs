@@ -112,7 +112,7 @@ impl Leg<'_> {
 }
 
 /// The way from elsewhere is looked for in the first time constants of the loop's gain: the window of the sweep below. A loop that rings
-/// has not settled by then, but later rows of its drive show other effects too.
+/// takes longer to settle, but later rows also show other effects of the drive.
 const SEEN: f64 = 5.0;
 
 /// The share of the squares beside a start at rest that the way from elsewhere may leave. Taken for such a way, a constant leaves 0.7 and

@@ -13,6 +13,7 @@ use crate::curves;
 use crate::dents::{self, Dent};
 use crate::dynamics;
 use crate::fit::Fit;
+use crate::heat;
 use crate::judge;
 use crate::kinship::Kin;
 use crate::model::{Effect, Fitted, Model};
@@ -77,6 +78,11 @@ pub(crate) fn find(
     let mut fit = search.fit(study);
     if let Some(loops) = dynamics::loops_alone(study, &fit.model, &search.conditions()) {
         (search, fit) = begun_anew(study, (search, fit), Start { model: loops, dent: None }, progress);
+    }
+    let known = Appraisal::new(study, &fit.model).weights;
+    let conditions = search.conditions();
+    if let Some(growths) = heat::growths_alone(study, &fit.model, &search.pool, &conditions.under(&known)) {
+        (search, fit) = begun_anew(study, (search, fit), Start { model: growths, dent: None }, progress);
     }
     let plain = (search, fit);
     let (other, dent) = beside_dents(study, plain.clone(), progress);

@@ -44,6 +44,7 @@ mod fit;
 mod follow;
 mod form;
 mod harmonics;
+mod heat;
 mod judge;
 mod kinship;
 mod legs;

@@ -79,9 +79,8 @@ pub(crate) fn find(
     if let Some(loops) = dynamics::loops_alone(study, &fit.model, &search.conditions()) {
         (search, fit) = begun_anew(study, (search, fit), Start { model: loops, dent: None }, progress);
     }
-    let known = Appraisal::new(study, &fit.model).weights;
-    let conditions = search.conditions();
-    if let Some(growths) = heat::growths_alone(study, &fit.model, &search.pool, &conditions.under(&known)) {
+    let growths = heat::growths_alone(study, &fit.model, &search.pool, &search.conditions());
+    if let Some(growths) = growths.filter(|growths| !same_effects(growths, &fit.model)) {
         (search, fit) = begun_anew(study, (search, fit), Start { model: growths, dent: None }, progress);
     }
     let plain = (search, fit);

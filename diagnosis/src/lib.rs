@@ -7,8 +7,8 @@
 //! recordings -> study: scenes with channels (coarse), sensors, blocks of rows (legs, targets, rounded, rest), parts that were clamped anew
 //!   (clamping) -> states: what every axis did (way, position_loop) -> observations: residual and gain of every channel (course, travel) -> noise: the filter that whitens it
 //! terms -> candidates, waves -> design: products of their columns -> search: the cheapest set (model, sweep) -> fit -> judge -> revise
-//!   -> engine: the rounds through all of this; harmonics: waves of one period; dynamics, curves, dents, crossing, answers: what imitates
-//!   or hides something else
+//!   -> engine: the rounds through all of this; harmonics: waves of one period; dynamics, heat, curves, dents, crossing, answers: what
+//!   imitates or hides something else
 //! returns: what comes back of a residual, before any name -> appraisal: the floor, and how samples weigh (weights)
 //! a fitted model -> audit: wrong files; compose: forms without a name; places, unsteady, repeats, zeros: what remains
 //!   -> certainty, alternatives, parameters, elements, words -> conclude: a Diagnosis, plain data -> report: text, JSON, a page (pictures)

@@ -239,7 +239,7 @@ fn tables(study: &Study<'_>, axis: usize, travel: &Travel) -> Vec<Shape> {
     let nodes = match stations(study, axis, travel) {
         Some(stations) => vec![stations],
         None => {
-            let fitted = places(study, axis, |scene| scene.fitted_rows());
+            let fitted = fitted_places(study, axis);
             let even = NODES.map(|count| even(travel.low, travel.high, count));
             even.into_iter().filter(|nodes| held(nodes, &fitted)).collect()
         }
@@ -251,6 +251,11 @@ fn tables(study: &Study<'_>, axis: usize, travel: &Travel) -> Vec<Shape> {
 pub(crate) fn even(from: f64, to: f64, count: usize) -> Vec<f64> {
     let at = |node: usize| from + (to - from) * crate::number(node) / crate::number(count - 1);
     (0..count).map(at).collect()
+}
+
+/// The programmed positions of an axis at which something was observed that is not held out, in order.
+pub(crate) fn fitted_places(study: &Study<'_>, axis: usize) -> Vec<f64> {
+    places(study, axis, |scene| scene.fitted_rows())
 }
 
 /// The programmed positions of an axis in those of some rows in which something was observed, in order.

@@ -6,6 +6,7 @@
 
 use nalgebra::DMatrix;
 
+use crate::curves::fitted_places;
 use crate::design::{Design, Regressor};
 use crate::model::{Effect, Model, Place};
 use crate::study::Study;
@@ -13,7 +14,7 @@ use crate::sweep::Swept;
 use crate::terms::Shape;
 use crate::weights::Weights;
 
-/// A table with as few of these nodes as Schwarz's criterion leaves.
+/// A table with as few of these nodes as Schwarz's criterion leaves; `None` where that is no table.
 pub(crate) fn thinned(
     study: &Study<'_>,
     kept: &Model,
@@ -43,7 +44,28 @@ pub(crate) fn thinned(
         }
         (cost, nodes) = (least, without);
     }
-    Some(shape(nodes.into_iter().map(|node| all[node]).collect()))
+    let nodes = within(nodes.into_iter().map(|node| all[node]).collect(), &fitted_places(study, axis));
+    (nodes.len() >= FEWEST).then(|| shape(nodes))
+}
+
+/// The nodes from the first to the last one at which something is fitted: one of some places is nearer to it than to the next node. An end of
+/// which only held-out samples know could have any value.
+fn within(mut nodes: Vec<f64>, places: &[f64]) -> Vec<f64> {
+    let nearer =
+        |end: f64, next: f64| places.iter().any(|place| 2.0 * (place - end).abs() <= (next - end).abs());
+    while let [first, second, ..] = nodes[..] {
+        if nearer(first, second) {
+            break;
+        }
+        nodes.remove(0);
+    }
+    while let [.., before, last] = nodes[..] {
+        if nearer(last, before) {
+            break;
+        }
+        nodes.pop();
+    }
+    nodes
 }
 
 /// A table of fewer nodes is a slope or a bend, which have names of their own.
@@ -91,3 +113,6 @@ impl Curve {
         joined
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -14,7 +14,7 @@ use crate::sweep::Swept;
 use crate::terms::Shape;
 use crate::weights::Weights;
 
-/// A table with as few of these nodes as Schwarz's criterion leaves; `None` where that is no table.
+/// A table with as few of these nodes as Schwarz's criterion leaves; `None` where too few of them lie where something is fitted.
 pub(crate) fn thinned(
     study: &Study<'_>,
     kept: &Model,
@@ -22,9 +22,13 @@ pub(crate) fn thinned(
     all: &[f64],
     weights: &Weights,
 ) -> Option<Shape> {
+    let all = within(all.to_vec(), &fitted_places(study, axis));
+    if all.len() < FEWEST {
+        return None;
+    }
     let shape = |nodes: Vec<f64>| Shape::Table { axis, nodes, directed: false, repeats: false };
     let mut regressors = Regressor::all(&kept.effects);
-    regressors.push(Regressor::of(Effect { place, shape: shape(all.to_vec()) }));
+    regressors.push(Regressor::of(Effect { place, shape: shape(all.clone()) }));
     let mut design = Design::new(study, kept, weights, regressors);
     design.rebase(&kept.effects);
     let (products, samples) = design.fitted();
@@ -44,15 +48,13 @@ pub(crate) fn thinned(
         }
         (cost, nodes) = (least, without);
     }
-    let nodes = within(nodes.into_iter().map(|node| all[node]).collect(), &fitted_places(study, axis));
-    (nodes.len() >= FEWEST).then(|| shape(nodes))
+    Some(shape(nodes.into_iter().map(|node| all[node]).collect()))
 }
 
 /// The nodes from the first to the last one at which something is fitted: one of some places is nearer to it than to the next node. An end of
 /// which only held-out samples know could have any value.
 fn within(mut nodes: Vec<f64>, places: &[f64]) -> Vec<f64> {
-    let nearer =
-        |end: f64, next: f64| places.iter().any(|place| 2.0 * (place - end).abs() <= (next - end).abs());
+    let nearer = |end: f64, next: f64| places.iter().any(|place| (place - end).abs() <= (place - next).abs());
     while let [first, second, ..] = nodes[..] {
         if nearer(first, second) {
             break;

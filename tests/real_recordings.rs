@@ -40,6 +40,9 @@ const OTHER_THAN_PLAY: f64 = 0.01;
 /// degrees of the arm for each motor degree, times 360.
 const PINION_TURN: f64 = 400.0 * 360.0 * 8.101_446_73e-5;
 
+/// The printer: how much its homing height falls for each kelvin of the frame, mm, by its owner's lengths and expansion.
+const FRAME: f64 = 2.80 * 530.0 * 23.4e-6;
+
 #[test]
 fn emps_follows_its_documented_position_loop() {
     let Some(found) = diagnosis(&["emps/recording.yaml"]) else { return };
@@ -199,6 +202,23 @@ fn warm_up_of_the_rotor_grows_with_a_temperature() {
     // The owner states no cause, so that there is no number to hold this against.
     assert!(held_out(&found) < rms(&found, "before"), "the findings help");
     figures("galicia-warmup", "recording", "galicia-warmup, lower edge", &found, &[]);
+}
+
+#[test]
+fn printer_grows_with_its_frame_and_its_bed_alone() {
+    let Some(found) = diagnosis(&["frame-warmup-b/recording.yaml"]) else { return };
+    only(&found, &[("EZZ", "growth")]);
+    let growth_of = |sensor: &str| {
+        let of_sensor = |finding: &&Value| finding["parameters"]["sensor"] == sensor;
+        findings(&found).iter().find(of_sensor).unwrap_or_else(|| panic!("no growth with {sensor}"))
+    };
+    // The owner explains more than 99 % with both. The chamber is nearer to the sum of both than either, and a drift beside it would be
+    // mistaken for the rest.
+    assert_eq!(findings(&found).len(), 2, "{:#}", found["findings"]);
+    let (frame, bed) = (growth_of("frame"), growth_of("bed"));
+    let falls = number(frame, "coefficient");
+    assert!(within(falls, -FRAME, 0.15), "{falls} mm/K, the owner has {}", -FRAME);
+    assert!(number(bed, "coefficient") > 0.0, "{bed:#}");
 }
 
 #[test]

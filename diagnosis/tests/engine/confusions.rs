@@ -1,6 +1,6 @@
 //! What one recording cannot tell apart is told together; what two can, is not.
 
-use abbe_diagnosis::diagnosis::{Diagnosis, Estimate, Verdict};
+use abbe_diagnosis::diagnosis::{Diagnosis, Verdict};
 use model_dsl::calibration::Calibration;
 use simulation::{Instrument, Path};
 
@@ -438,33 +438,4 @@ fn a_play_is_found_where_runs_are_cut_out_of_a_motion() {
     let mut found = found(&diagnosis);
     found.sort();
     assert_eq!(found, ["EXX backlash", "EXX lag"]);
-}
-
-#[test]
-fn a_frame_and_a_bed_that_warm_up_together_are_no_third_sensor() {
-    let bench = Bench::of("FZ");
-    let truth = bench.calibration(
-        "{EZZ: [{growth: {sensor: frame, coefficient: -30 um/K, reference: 20 degC, time_constant: 150 s}}, \
-        {growth: {sensor: bed, coefficient: 1.51 um/K, reference: 20 degC}}]}",
-    );
-    let rest = path(simulation::path::Shape::Still { time: 4000.0 }, 1.0, 0.2);
-    let mut scenario = noisy(rest, position("z"), 0.002, 191);
-    scenario.measurement.noise.correlated =
-        Some(simulation::noise::Correlated { sigma: 0.002, time_constant: 150.0 });
-    let sensor = |name: &str, steps: &[(f64, f64)], time_constant: f64| simulation::Temperature {
-        steps: steps.to_vec(),
-        noise: simulation::noise::Noise::white(0.02),
-        ..warming(name, 0.0, time_constant)
-    };
-    // The chamber is nearest to the sum of both. Where the search begins with it, a polynomial of its temperature explains the rest.
-    scenario.temperatures = vec![
-        sensor("frame", &[(0.0, 32.0), (2500.0, 31.0)], 1727.0),
-        sensor("chamber", &[(0.0, 36.0), (1800.0, 34.6)], 743.0),
-        sensor("bed", &[(0.0, 90.0)], 120.0),
-    ];
-    let diagnosis = diagnosed(&bench, &bench.calibration("{}"), &[&bench.record(&truth, &scenario)]);
-    assert_eq!(found(&diagnosis), ["EZZ growth", "EZZ growth"]);
-    let sizes: Vec<Estimate> =
-        diagnosis.findings.iter().flat_map(|finding| numbers(finding, "coefficient")).collect();
-    assert!(off(&sizes[0], -30e-3) < FAR && off(&sizes[1], 1.51e-3) < FAR, "{sizes:?}");
 }

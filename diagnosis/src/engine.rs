@@ -122,6 +122,7 @@ fn told(
         }
     }
     (fit, appraisal) = revision.revised(study, fit, appraisal);
+    (fit, appraisal) = revision.simplified(study, fit, appraisal);
     while let Some(model) = curves::without_combs(&fit.model) {
         let rest = conditions.under(&appraisal.weights).refine(study, model);
         (fit, appraisal) = upheld(study, rest, &conditions);

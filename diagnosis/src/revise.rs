@@ -6,6 +6,7 @@
 //! it is compared, and nothing is added that the judge would drop.
 
 use crate::appraisal::Appraisal;
+use crate::candidates::simplicity;
 use crate::channel::ChannelAt;
 use crate::conditions::Conditions;
 use crate::course::courses;
@@ -52,6 +53,26 @@ impl Revision<'_> {
         self.revised_to(study, (fit, appraisal), count)
     }
 
+    /// Exchanges effects for others of fewer parameters until nothing costs less, also where nothing is lacking: what was taken beside effects
+    /// that did not stand up may bend or wind up more than is left to explain.
+    pub(crate) fn simplified(&self, study: &Study<'_>, fit: Fit, appraisal: Appraisal) -> (Fit, Appraisal) {
+        let mut stands = (fit, appraisal);
+        while let Some(simpler) = self.simpler(study, (&stands.0, &stands.1)) {
+            stands = simpler;
+        }
+        stands
+    }
+
+    /// A model with an effect of fewer parameters in the place of one, which costs less and is at least as simple a name.
+    fn simpler(&self, study: &Study<'_>, stands: (&Fit, &Appraisal)) -> Option<(Fit, Appraisal)> {
+        let names = |model: &Model| -> f64 {
+            model.chosen().iter().map(|fitted| simplicity(study, &fitted.effect)).sum()
+        };
+        let (parameters_now, names_now) = (parameters(&stands.0.model), names(&stands.0.model));
+        let is_simpler = |trial: &Model| parameters(trial) < parameters_now && names(trial) <= names_now;
+        self.cheaper(study, stands, &is_simpler).find_map(|cheaper| self.upheld(study, cheaper, stands))
+    }
+
     /// Exchanges effects, and adds some as long as there are no more than `most`, until nothing is better.
     fn revised_to(
         &self,
@@ -72,7 +93,7 @@ impl Revision<'_> {
     /// A model that is better by one effect, or by two together.
     fn better(&self, study: &Study<'_>, stands: (&Fit, &Appraisal), most: usize) -> Option<(Fit, Appraisal)> {
         let mut first = None;
-        for cheaper in self.cheaper(study, stands, most) {
+        for cheaper in self.cheaper(study, stands, &at_most(most)) {
             if let Some(upheld) = self.upheld(study, cheaper.clone(), stands) {
                 return Some(upheld);
             }
@@ -93,23 +114,22 @@ impl Revision<'_> {
     ) -> Option<(Fit, Appraisal)> {
         let appraisal = Appraisal::new(study, &first.model);
         let fit = self.conditions.under(&appraisal.weights).refine(study, first.model);
-        let second = self.cheaper(study, (&fit, &appraisal), most).next()?;
+        let second = self.cheaper(study, (&fit, &appraisal), &at_most(most)).next()?;
         let upheld = self.upheld(study, second, (&fit, &appraisal))?;
         self.is_better(study, &upheld, stands).then_some(upheld)
     }
 
-    /// The trials that cost less than what stands once they are fitted, the most promising first.
+    /// The trials, of those that are `allowed`, that cost less than what stands once they are fitted, the most promising first.
     fn cheaper<'a>(
         &'a self,
         study: &'a Study<'a>,
         (fit, appraisal): (&'a Fit, &'a Appraisal),
-        most: usize,
+        allowed: &dyn Fn(&Model) -> bool,
     ) -> impl Iterator<Item = Fit> + 'a {
         let conditions = self.conditions.under(&appraisal.weights);
         let prices = conditions.prices(study, &fit.model, fit.samples);
         let cost = conditions.cost_at(study, fit, &prices);
-        let mut trials = self.trials(study, fit, &prices, appraisal);
-        trials.retain(|trial| trial.model.effects.len() <= most);
+        let trials = self.trials(study, fit, &prices, appraisal, allowed);
         trials.into_iter().filter_map(move |trial| {
             let fitted = conditions.refine(study, trial.model);
             (conditions.cost_at(study, &fitted, &trial.prices) < cost).then_some(fitted)
@@ -172,8 +192,15 @@ impl Revision<'_> {
         }
     }
 
-    /// Models with another effect in the place of one, and with one more, the most promising first.
-    fn trials(&self, study: &Study<'_>, fit: &Fit, prices: &[f64], appraisal: &Appraisal) -> Vec<Trial> {
+    /// Models with another effect in the place of one, and with one more, of those that are `allowed`, the most promising first.
+    fn trials(
+        &self,
+        study: &Study<'_>,
+        fit: &Fit,
+        prices: &[f64],
+        appraisal: &Appraisal,
+        allowed: &dyn Fn(&Model) -> bool,
+    ) -> Vec<Trial> {
         let model = &fit.model;
         let open = self.open(study, model, appraisal, fit.samples);
         let mut regressors = Regressor::all(&model.effects);
@@ -213,12 +240,12 @@ impl Revision<'_> {
             gains.sort_by(|a, b| b.0.total_cmp(&a.0));
             // One in the place of another may say less before it is fitted.
             let least = if place.is_some() { -LEEWAY } else { 0.0 };
-            for (gain, number) in gains.into_iter().filter(|(gain, _)| *gain > least).take(TRIED) {
-                let trial = kept.with(Fitted::unfitted(open[number].effect.clone()));
-                let mut prices = prices.clone();
-                prices.push(open[number].price);
-                trials.push(Trial { model: trial, prices, gain });
-            }
+            let promising = gains.into_iter().filter(|(gain, _)| *gain > least).map(|(gain, number)| {
+                let model = kept.with(Fitted::unfitted(open[number].effect.clone()));
+                let prices = prices.iter().copied().chain([open[number].price]).collect();
+                Trial { model, prices, gain }
+            });
+            trials.extend(promising.filter(|trial| allowed(&trial.model)).take(TRIED));
         }
         trials.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         trials.truncate(2 * TRIED);
@@ -261,6 +288,16 @@ struct Trial {
     model: Model,
     prices: Vec<f64>,
     gain: f64,
+}
+
+/// Allows models of at most so many effects.
+fn at_most(effects: usize) -> impl Fn(&Model) -> bool {
+    move |trial| trial.effects.len() <= effects
+}
+
+/// How many numbers of a model are fitted or searched for.
+fn parameters(model: &Model) -> usize {
+    model.effects.iter().map(|fitted| fitted.effect.shape.parameters()).sum()
 }
 
 /// Whether an effect may not stand beside one of the model: it is the same in another form, or what a table leaves at its corners.

@@ -31,8 +31,7 @@ const PATIENCE: f64 = 12.0;
 pub(crate) fn price(study: &Study<'_>, effect: &Effect, samples: f64, tries: f64, waves: f64) -> f64 {
     // The period of a wave is no further parameter: it was looked for among all waves of all motions, which their number counts.
     let wave = effect.shape.is_wave();
-    let searched = effect.shape.nonlinear().is_some() && !wave;
-    let parameters = effect.shape.columns() + usize::from(searched) + effect.shape.searched_factors();
+    let parameters = if wave { effect.shape.columns() } else { effect.shape.parameters() };
     let tried = match effect.shape {
         // A harmonic was looked for among those of its wave.
         Shape::Cyclic { order, .. } if order > 1 => f64::from(HIGHEST).ln(),

@@ -159,8 +159,13 @@ impl Shape {
         }
     }
 
+    /// How many numbers of it are fitted or searched for.
+    pub(crate) fn parameters(&self) -> usize {
+        self.columns() + usize::from(self.nonlinear().is_some()) + self.searched_factors()
+    }
+
     /// How many numbers of its factors were searched for, and for an event its time.
-    pub(crate) fn searched_factors(&self) -> usize {
+    fn searched_factors(&self) -> usize {
         if let Self::Step { .. } = self {
             return 1;
         }

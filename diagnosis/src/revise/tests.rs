@@ -47,7 +47,7 @@ fn promised_and_saved(slope: f64) -> (f64, f64) {
         let conditions = &revision.conditions;
         let prices = conditions.prices(study, &fit.model, fit.samples);
         let cost = conditions.cost_at(study, &fit, &prices);
-        let trials = revision.trials(study, &fit, &prices, &appraisal);
+        let trials = revision.trials(study, &fit, &prices, &appraisal, &|_| true);
         let beside = trials.iter().find(|trial| trial.model.effects.len() > fit.model.effects.len()).unwrap();
         let fitted = conditions.refine(study, beside.model.clone());
         (beside.gain, cost - conditions.cost_at(study, &fitted, &beside.prices))
@@ -94,4 +94,44 @@ fn a_model_is_better_only_where_it_costs_less_than_the_one_that_stands() {
     };
     assert!(with_slope_is_better(0.2));
     assert!(!with_slope_is_better(0.0), "the slope of noise");
+}
+
+/// The degree of the polynomial that is left of one of degree 3, where the machine has one with these coefficients.
+fn simplified(coefficients: &str) -> usize {
+    let bench = Bench::of("FX");
+    let truth = bench.calibration(&format!(
+        "{{EXX: [{{polynomial: {{axis: X, per: mm, unit: um, coefficients: {coefficients}}}}}]}}"
+    ));
+    let there_and_back = path(line(0, 0.0, 300.0), 20.0, 20.0);
+    let recording = bench.record(&truth, &noisy(there_and_back, position("x"), 0.000_3, 5));
+    let study = Study::new(bench.equations(), None, &[&recording]);
+    let place = Place::Motion { motion: bench.motion("EXX"), side: Side::After };
+    let effect =
+        |degree| Effect { place, shape: Shape::Polynomial { axis: 0, degree, center: 150.0, scale: 150.0 } };
+    let zero = Fitted::unfitted(Effect::setting(0, Setting::Offset { channel: 0 }));
+    let model = Model::of([zero, Fitted::unfitted(effect(3))]).with_settings(1);
+    let travels = travels(&study, &courses(&study, &model));
+    let weights = Appraisal::new(&study, &model).weights;
+    let tries = Tries { candidates: 40.0, waves: 300.0 };
+    let before = Conditions { weights: &weights, travels: &travels, tries };
+    let model = before.refine(&study, model).model;
+    let appraisal = Appraisal::new(&study, &model);
+    let weights = appraisal.weights.clone();
+    let conditions = before.under(&weights);
+    let fit = conditions.refine(&study, model);
+    assert!(!appraisal.lacks(), "nothing is lacking");
+    let pool = [1, 2].map(|degree| Kin { effect: effect(degree), equals: Vec::new() });
+    let revision = Revision { pool: &pool, places: &[], refuted: &[], bands: &[], conditions };
+    let (fit, _) = revision.simplified(&study, fit, appraisal);
+    match fit.model.chosen() {
+        [Fitted { effect: Effect { shape: Shape::Polynomial { degree, .. }, .. }, .. }] => *degree,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_polynomial_keeps_the_powers_that_are_there() {
+    assert_eq!(simplified("[0, 0.05]"), 1);
+    assert_eq!(simplified("[0, 0.05, -2e-4]"), 2);
+    assert_eq!(simplified("[0, 0.05, -2e-4, 1e-6]"), 3);
 }

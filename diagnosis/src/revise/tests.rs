@@ -8,24 +8,23 @@ use crate::terms::Setting;
 use crate::testing::{Bench, line, noisy, path, position};
 use crate::travel::travels;
 
-/// A fit with a backlash, of a machine that has a backlash and a slope, um/mm, and what `asked` makes of a revision that knows the slope.
-fn beside_a_backlash<T>(
-    slope: f64,
-    refuted: bool,
+/// What `asked` makes of a revision that knows `pool` and has refuted `refuted`. It revises a fit with one effect, `claimed`, of a machine
+/// that has `errors` in EXX.
+fn revising<T>(
+    errors: &str,
+    claimed: Shape,
+    (pool, refuted): (&[Shape], &[Shape]),
     asked: impl FnOnce(&Study<'_>, &Revision<'_>, (Fit, Appraisal)) -> T,
 ) -> T {
     let bench = Bench::of("FX");
-    let truth = bench.calibration(&format!(
-        "{{EXX: [{{backlash: {{lost_motion: 6 um}}}}, {{polynomial: {{axis: X, per: mm, unit: um, coefficients: [0, {slope}]}}}}]}}"
-    ));
+    let truth = bench.calibration(&format!("{{EXX: [{errors}]}}"));
     let there_and_back = path(line(0, 0.0, 300.0), 20.0, 20.0);
     let recording = bench.record(&truth, &noisy(there_and_back, position("x"), 0.000_3, 5));
     let study = Study::new(bench.equations(), None, &[&recording]);
     let place = Place::Motion { motion: bench.motion("EXX"), side: Side::After };
-    let effect = |shape| Effect { place, shape };
+    let effect = |shape: &Shape| Effect { place, shape: shape.clone() };
     let zero = Fitted::unfitted(Effect::setting(0, Setting::Offset { channel: 0 }));
-    let backlash = Fitted::unfitted(effect(Shape::Backlash { axis: 0, wind_up: 0.0 }));
-    let model = Model::of([zero, backlash]).with_settings(1);
+    let model = Model::of([zero, Fitted::unfitted(effect(&claimed))]).with_settings(1);
     let travels = travels(&study, &courses(&study, &model));
     let first = Appraisal::new(&study, &model);
     let tries = Tries { candidates: 40.0, waves: 300.0 };
@@ -34,11 +33,29 @@ fn beside_a_backlash<T>(
     let weights = appraisal.weights.clone();
     let conditions = before.under(&weights);
     let fit = conditions.refine(&study, model);
-    let slope = effect(Shape::Polynomial { axis: 0, degree: 1, center: 150.0, scale: 150.0 });
-    let pool = [Kin { effect: slope.clone(), equals: Vec::new() }];
-    let refuted = if refuted { vec![slope] } else { Vec::new() };
+    let pool: Vec<Kin> = pool.iter().map(|shape| Kin { effect: effect(shape), equals: Vec::new() }).collect();
+    let refuted: Vec<Effect> = refuted.iter().map(effect).collect();
     let revision = Revision { pool: &pool, places: &[], refuted: &refuted, bands: &[], conditions };
     asked(&study, &revision, (fit, appraisal))
+}
+
+/// A polynomial along X.
+fn polynomial(degree: usize) -> Shape {
+    Shape::Polynomial { axis: 0, degree, center: 150.0, scale: 150.0 }
+}
+
+/// A revision of a fit with a backlash, of a machine that has a backlash and a slope, um/mm. The revision knows the slope.
+fn beside_a_backlash<T>(
+    slope: f64,
+    refuted: bool,
+    asked: impl FnOnce(&Study<'_>, &Revision<'_>, (Fit, Appraisal)) -> T,
+) -> T {
+    let errors = format!(
+        "{{backlash: {{lost_motion: 6 um}}}}, {{polynomial: {{axis: X, per: mm, unit: um, coefficients: [0, {slope}]}}}}"
+    );
+    let known = [polynomial(1)];
+    let refuted = if refuted { &known[..] } else { &[] };
+    revising(&errors, Shape::Backlash { axis: 0, wind_up: 0.0 }, (&known, refuted), asked)
 }
 
 /// What a slope beside a backlash promises, and what it saves when it is fitted.
@@ -98,35 +115,15 @@ fn a_model_is_better_only_where_it_costs_less_than_the_one_that_stands() {
 
 /// The degree of the polynomial that is left of one of degree 3, where the machine has one with these coefficients.
 fn simplified(coefficients: &str) -> usize {
-    let bench = Bench::of("FX");
-    let truth = bench.calibration(&format!(
-        "{{EXX: [{{polynomial: {{axis: X, per: mm, unit: um, coefficients: {coefficients}}}}}]}}"
-    ));
-    let there_and_back = path(line(0, 0.0, 300.0), 20.0, 20.0);
-    let recording = bench.record(&truth, &noisy(there_and_back, position("x"), 0.000_3, 5));
-    let study = Study::new(bench.equations(), None, &[&recording]);
-    let place = Place::Motion { motion: bench.motion("EXX"), side: Side::After };
-    let effect =
-        |degree| Effect { place, shape: Shape::Polynomial { axis: 0, degree, center: 150.0, scale: 150.0 } };
-    let zero = Fitted::unfitted(Effect::setting(0, Setting::Offset { channel: 0 }));
-    let model = Model::of([zero, Fitted::unfitted(effect(3))]).with_settings(1);
-    let travels = travels(&study, &courses(&study, &model));
-    let weights = Appraisal::new(&study, &model).weights;
-    let tries = Tries { candidates: 40.0, waves: 300.0 };
-    let before = Conditions { weights: &weights, travels: &travels, tries };
-    let model = before.refine(&study, model).model;
-    let appraisal = Appraisal::new(&study, &model);
-    let weights = appraisal.weights.clone();
-    let conditions = before.under(&weights);
-    let fit = conditions.refine(&study, model);
-    assert!(!appraisal.lacks(), "nothing is lacking");
-    let pool = [1, 2].map(|degree| Kin { effect: effect(degree), equals: Vec::new() });
-    let revision = Revision { pool: &pool, places: &[], refuted: &[], bands: &[], conditions };
-    let (fit, _) = revision.simplified(&study, fit, appraisal);
-    match fit.model.chosen() {
-        [Fitted { effect: Effect { shape: Shape::Polynomial { degree, .. }, .. }, .. }] => *degree,
-        other => panic!("{other:?}"),
-    }
+    let errors = format!("{{polynomial: {{axis: X, per: mm, unit: um, coefficients: {coefficients}}}}}");
+    let simpler = [polynomial(1), polynomial(2)];
+    revising(&errors, polynomial(3), (&simpler, &[]), |study, revision, (fit, appraisal)| {
+        assert!(!appraisal.lacks(), "nothing is lacking");
+        match revision.simplified(study, fit, appraisal).0.model.chosen() {
+            [Fitted { effect: Effect { shape: Shape::Polynomial { degree, .. }, .. }, .. }] => *degree,
+            other => panic!("{other:?}"),
+        }
+    })
 }
 
 #[test]

@@ -155,9 +155,9 @@ fn a_name_that_no_tool_has_is_refused_before_anything_is_written() {
         let with = [command, &[&with, "--tool", "prob"]].concat();
         told(&with, "error: --tool: the calibration has no tool `prob`\nhelp: is it `probe`?");
         let other = [command, &[&without, "--tool", "T9"]].concat();
-        told(&other, "help: write `tools: {T9: {Zt: 120 mm}}` in it");
+        told(&other, "help: write `tools: {T9: {Zt: -120 mm}}` in it");
         let without = [command, &[&without, "--tool", "T1"]].concat();
-        told(&without, "help: write `tools: {T1: {Zt: 120 mm}}` in it");
+        told(&without, "help: write `tools: {T1: {Zt: -120 mm}}` in it");
     }
     told(
         &["evaluate", "recordings/postech-ballbar/recording.yaml", "--tool", "T1"],

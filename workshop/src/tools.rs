@@ -31,7 +31,7 @@ pub fn instead(calibration: &Calibration, name: &str) -> String {
         None if calibration.tools.is_empty() => {
             let plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
             let name = if !name.is_empty() && name.chars().all(plain) { name } else { "T1" };
-            format!("write `tools: {{{name}: {{Zt: 120 mm}}}}` in it")
+            format!("write `tools: {{{name}: {{Zt: -120 mm}}}}` in it")
         }
         None => format!("there are {}", tools().take(MOST_TOLD).collect::<Vec<_>>().join(", ")),
     }

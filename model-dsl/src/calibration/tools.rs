@@ -22,7 +22,7 @@ pub(super) fn read_tools(
     let Some(entries) = node.entries() else {
         let message = format!("`tools` must be a mapping of names to constants, found {}", node.kind_name());
         let mistake = Diagnostic::error("E0404", node.span, message);
-        diagnostics.push(mistake.help("write one line `T1: {Zt: 120 mm}` for each tool"));
+        diagnostics.push(mistake.help("write one line `T1: {Zt: -120 mm}` for each tool"));
         return Vec::new();
     };
     let read = |(name, value): &(Spanned<String>, Node)| Tool {
@@ -48,7 +48,7 @@ fn read_tool(
         );
         let mistake = Diagnostic::error("E0404", node.span, message);
         diagnostics
-            .push(mistake.help("write the constants that differ with this tool, such as `{Zt: 120 mm}`"));
+            .push(mistake.help("write the constants that differ with this tool, such as `{Zt: -120 mm}`"));
         return values;
     };
     let is_constant = |(key, _): &&(Spanned<String>, Node)| {

@@ -45,7 +45,7 @@ pub fn setup(files: &[(&Path, String)]) -> Result<String, Failure> {
         setup: 1\n\
         machine: XYFZ   # a machine file, a shipped machine or a topology word\n\
         # source: who measured what, with which instrument, when\n\
-        constants: {Xt: 0 mm, Yt: 0 mm, Zt: 120 mm}   # the machine's own offsets, above all the length of the tool\n"
+        constants: {Xt: 0 mm, Yt: 0 mm, Zt: -120 mm}   # the machine's own: here the tip of the tool is 120 mm below the head\n"
         .to_owned();
     let (mut corrections, mut measurements) = (String::new(), String::new());
     for (path, name) in files {

@@ -125,69 +125,96 @@ fn pays(
     number: usize,
     conditions: &Conditions<'_>,
 ) -> bool {
-    let (appraisal, whole) = left;
-    let bare = fit.model.without(number);
     let others = followed(study, without(design, swept, &fit.model, &[number]), fit, number, conditions);
-    let [bare, others] = [&bare, &others].map(|model| zeros::residuals(study, model));
-    let (mut gained, mut expected, mut peak) = (0.0, 0.0, 0.0_f64);
-    let mut returning = 0.0;
-    let mut told = !fit.model.effects[number].effect.shape.is_wave();
-    for (scene, known) in study.scenes.iter().enumerate() {
-        let fitted = known.fitted_rows();
-        for channel in 0..known.channels.len() {
-            let at = ChannelAt { scene, channel };
-            let (size, outliers) = (appraisal.weights.noise(at).size(), appraisal.weights.outliers.of(at));
-            let (bare, others, left) =
-                (&bare[scene][channel], &others[scene][channel], &whole[scene][channel]);
-            let usable = |row: usize| bare[row].is_finite() && !outliers[row];
-            let rows: Vec<usize> = (0..bare.len()).filter(|row| usable(*row)).collect();
-            let effect = |row: usize| (bare[row] - left[row]) / size;
-            let mut everywhere: Vec<f64> = rows.iter().map(|row| effect(*row)).collect();
-            zeros::center(&mut everywhere);
-            let highest = everywhere.iter().fold(0.0, |highest: f64, value| highest.max(value.abs()));
-            peak = peak.max(highest);
-            told |= highest * size > rounded::beat(known.channels[channel].rounding, size);
-            let nearer = |row: usize| (others[row] * others[row] - left[row] * left[row]) / (size * size);
-            returning += appraisal.returning[scene][channel] / (size * size);
-            let held = || rows.iter().copied().filter(|row| !fitted[*row]);
-            let mut signal: Vec<f64> = held().map(effect).collect();
-            zeros::center(&mut signal);
-            expected += signal.iter().map(|value| value * value).sum::<f64>();
-            gained += held().map(nearer).sum::<f64>();
-        }
-    }
+    let channels = showing(study, &fit.model.without(number), &others, left);
+    let told =
+        !fit.model.effects[number].effect.shape.is_wave() || channels.iter().any(|channel| channel.told);
+    let peak = channels.iter().map(|channel| channel.highest).fold(0.0, f64::max);
+    let expected: f64 = channels.iter().map(|channel| channel.expected).sum();
+    let gained: f64 = channels.iter().map(|channel| channel.gained).sum();
     let together = || {
         let harmonics = harmonics::together(&fit.model, number);
         harmonics.len() > 1 && {
-            let others = zeros::residuals(study, &without(design, swept, &fit.model, &harmonics));
-            taken(study, &others, left) > APART * returning
+            let others = without(design, swept, &fit.model, &harmonics);
+            takes_more(&showing(study, &fit.model.without_all(&harmonics), &others, left))
         }
     };
-    told && peak > MATERIAL
-        && (expected < TELLING || gained > 0.0)
-        && (taken(study, &others, left) > APART * returning || together())
+    told && peak > MATERIAL && (expected < TELLING || gained > 0.0) && (takes_more(&channels) || together())
 }
 
-/// What an effect takes from the sum of squares must be at least this share of what still comes back without a name: less may be a
-/// piece of that. The harmonics of a wave are one thing, and take it together.
-const APART: f64 = 1.0;
+/// What a channel shows of effects, in units of its noise.
+struct Shown {
+    /// Their sum of squares.
+    energy: f64,
+    /// The most of them in a sample.
+    highest: f64,
+    /// Whether that is more than the beat of a wave with the rounding of the channel.
+    told: bool,
+    /// Their sum of squares in the held-out samples.
+    expected: f64,
+    /// By how much the sum of squares of the held-out samples is less through them.
+    gained: f64,
+    /// By how much that of all samples is.
+    taken: f64,
+    /// What comes back without a name beside them.
+    returning: f64,
+}
 
-/// What is taken from the sum of squares of all samples, in units of their noise, from residuals of a model without some effects to those
-/// of the whole.
-fn taken(
+/// What the channels that show effects show of them: `bare` is the model without them, `others` the same with the others fitted again, and
+/// `left` what the whole model leaves.
+fn showing(
     study: &Study<'_>,
-    without: &[Vec<Vec<f64>>],
+    bare: &Model,
+    others: &Model,
     (appraisal, whole): (&Appraisal, &[Vec<Vec<f64>>]),
-) -> f64 {
-    let of_channel = |at: ChannelAt| -> f64 {
-        let (others, left) = (&without[at.scene][at.channel], &whole[at.scene][at.channel]);
-        let outliers = appraisal.weights.outliers.of(at);
-        let rows = others.iter().zip(left).zip(outliers);
-        let used = rows.filter(|((value, _), outlier)| value.is_finite() && !**outlier);
-        let taken = used.map(|((others, left), _)| others * others - left * left).sum::<f64>();
-        taken / appraisal.weights.noise(at).size().powi(2)
+) -> Vec<Shown> {
+    let [bare, others] = [bare, others].map(|model| zeros::residuals(study, model));
+    let of_channel = |at: ChannelAt| -> Shown {
+        let ChannelAt { scene, channel } = at;
+        let fitted = study.scenes[scene].fitted_rows();
+        let (size, outliers) = (appraisal.weights.noise(at).size(), appraisal.weights.outliers.of(at));
+        let (bare, others, left) = (&bare[scene][channel], &others[scene][channel], &whole[scene][channel]);
+        let rows = || (0..bare.len()).filter(|row| bare[*row].is_finite() && !outliers[*row]);
+        let held = || rows().filter(|row| !fitted[*row]);
+        let centered = |rows: &dyn Fn() -> Vec<usize>| -> Vec<f64> {
+            let mut effect: Vec<f64> = rows().into_iter().map(|row| (bare[row] - left[row]) / size).collect();
+            zeros::center(&mut effect);
+            effect
+        };
+        let (everywhere, in_held) = (centered(&|| rows().collect()), centered(&|| held().collect()));
+        let highest = everywhere.iter().fold(0.0, |highest: f64, value| highest.max(value.abs()));
+        let squares = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>();
+        let nearer = |row: usize| (others[row] * others[row] - left[row] * left[row]) / (size * size);
+        Shown {
+            energy: squares(&everywhere),
+            highest,
+            told: highest * size > rounded::beat(study.scenes[scene].channels[channel].rounding, size),
+            expected: squares(&in_held),
+            gained: held().map(nearer).sum(),
+            taken: rows().map(nearer).sum(),
+            returning: appraisal.returning[scene][channel] / (size * size),
+        }
     };
-    study.channels().map(of_channel).sum()
+    let channels: Vec<Shown> = study.channels().map(of_channel).collect();
+    let energy = channels.iter().map(|channel| channel.energy).sum();
+    channels.into_iter().filter(|channel| shows(channel.energy, energy)).collect()
+}
+
+/// Whether a channel shows an effect: by its energy there, in units of the noise, and in all channels. Where it does not, others that are
+/// fitted a little differently beside the effect would be taken for it.
+pub(crate) fn shows(energy: f64, of_all: f64) -> bool {
+    energy > CRUMB * of_all
+}
+
+/// The share of the energy of an effect from which on a channel shows it: less is a crumb, of which no channel tells anything.
+const CRUMB: f64 = 0.01;
+
+/// Whether effects take more than what still comes back without a name where they show: less may be a piece of that. The harmonics of a
+/// wave are one thing, and take it together.
+fn takes_more(channels: &[Shown]) -> bool {
+    let taken: f64 = channels.iter().map(|channel| channel.taken).sum();
+    let returning: f64 = channels.iter().map(|channel| channel.returning).sum();
+    taken > returning
 }
 
 /// Whether a wave in time is a piece of a function of a state, which strokes of equal length bring back at equal times: most of it

@@ -306,28 +306,26 @@ fn against(known: &Effect, effect: &Effect) -> bool {
 }
 
 /// Whether an effect takes at least as much as what comes back without a name beside it: less may be a piece of that, as a wave is
-/// of a dent.
+/// of a dent. Only the channels that show the effect count.
 pub(crate) fn stands_apart(study: &Study<'_>, without: &Appraisal, with: &Appraisal) -> bool {
-    let (mut taken, mut returning) = (0.0, 0.0);
-    for (scene, known) in study.scenes.iter().enumerate() {
-        for channel in 0..known.channels.len() {
-            let [one, other] =
-                [with, without].map(|one| one.weights.outliers.of(ChannelAt { scene, channel }));
-            let [before, after] = [without, with].map(|one| &one.residuals[scene][channel]);
-            let valid: Vec<bool> = one
-                .iter()
-                .zip(other)
-                .zip(after)
-                .map(|((a, b), value)| !a && !b && value.is_finite())
-                .collect();
-            let size = with.leftover[scene][channel].max(f64::MIN_POSITIVE);
-            let rows = || before.iter().zip(after).zip(&valid).filter(|(_, valid)| **valid);
-            taken += rows().map(|((before, after), _)| before * before - after * after).sum::<f64>()
-                / (size * size);
-            returning += known.returns.most(after, &valid) / (size * size);
-        }
-    }
-    taken > returning
+    // Of each channel, in units of what is left: the energy of the effect, and by how much it takes more than what comes back.
+    let of_channel = |at: ChannelAt| -> (f64, f64) {
+        let ChannelAt { scene, channel } = at;
+        let [one, other] = [with, without].map(|one| one.weights.outliers.of(at));
+        let [before, after] = [without, with].map(|one| &one.residuals[scene][channel]);
+        let valid: Vec<bool> =
+            one.iter().zip(other).zip(after).map(|((a, b), value)| !a && !b && value.is_finite()).collect();
+        let rows = || before.iter().zip(after).zip(&valid).filter(|(_, valid)| **valid);
+        let energy: f64 = rows().map(|((before, after), _)| (before - after).powi(2)).sum();
+        let taken: f64 = rows().map(|((before, after), _)| before * before - after * after).sum();
+        let returning = study.scenes[scene].returns.most(after, &valid);
+        let size = with.leftover[scene][channel].max(f64::MIN_POSITIVE);
+        (energy / (size * size), (taken - returning) / (size * size))
+    };
+    let channels: Vec<(f64, f64)> = study.channels().map(of_channel).collect();
+    let energy = channels.iter().map(|(energy, _)| energy).sum();
+    let shown = channels.iter().filter(|(own, _)| judge::shows(*own, energy));
+    shown.map(|(_, more)| more).sum::<f64>() > 0.0
 }
 
 /// By how much an effect in the place of another one may fall short before its own parameter is fitted: half of a grid's step.

@@ -267,6 +267,46 @@ fn columns_more_show_the_same() {
     same(0..CASES, more, each_within_the_other);
 }
 
+/// An instrument that also reads directions in which nothing is to be seen finds what it finds without them, also of an effect that is
+/// smaller than the noise. Their noise walks about as far as it scatters: a zero that is fitted a little differently gains or loses as much
+/// there as the effect does where it shows.
+#[test]
+fn directions_that_wander_change_nothing() {
+    let wandering = |seed: u64, rows: usize| -> Vec<f64> {
+        let mut walked = 0.0;
+        let steps = normals(seed, rows).into_iter();
+        let walk = steps.map(|step| {
+            walked += 0.03 * SIGMA * step;
+            walked
+        });
+        let white = normals(seed + 50, rows);
+        walk.zip(white).map(|(walk, white)| walk + SIGMA * white).collect()
+    };
+    let mut found = 0;
+    for seed in 0..CASES {
+        let mut random = Random(Source::new(seed, "directions"));
+        let wave = format!(
+            "{{EXX: [{{cyclic: {{period: {} mm, amplitude: {} mm, phase: {} rad}}}}]}}",
+            random.between(10.0, 20.0),
+            random.between(0.3, 0.5) * SIGMA,
+            random.between(-1.5, 1.5)
+        );
+        let lines = Path { runs: 6, ..path(line(0, 0.0, random.between(200.0, 260.0)), 20.0, 12.0) };
+        let Case { bench, recording, concealed } =
+            recorded("FX", wave, &noisy(lines, position("x"), SIGMA, seed));
+        let mut more = recording.clone();
+        more.measured[1] = Some(wandering(300 + seed, more.time.len()));
+        more.measured[2] = Some(wandering(400 + seed, more.time.len()));
+        let known = bench.calibration("{}");
+        let [alone, beside] = [&recording, &more].map(|one| diagnosed(&bench, &known, &[one]));
+        let waves =
+            |diagnosis: &Diagnosis| -> Vec<String> { sorted(diagnosis).into_iter().map(named).collect() };
+        assert_eq!(waves(&alone), waves(&beside), "seed {seed}, {concealed}");
+        found += alone.findings.len();
+    }
+    assert!(found > 0, "nothing was found in any case");
+}
+
 /// The recording as it is read from a file with these units of lengths, time and temperature; its clock begins at `origin`, s.
 fn read_from(name: &str, case: &Case, units: &[Unit; 3], origin: f64) -> Recording {
     let [length, time, temperature] = units;

@@ -16,7 +16,11 @@ use simulation::{Instrument, Measurement, Plant, Scenario, Simulated, State, sim
 use crate::bench::Bench;
 use crate::draw::Draw;
 use crate::effect::{self, Planted, Sensors, TERMS};
+use crate::evidence::Channel;
 use crate::scene::{Kind, Noises, Scene};
+
+/// Readings further than this many standard deviations from what is clean are outliers: Gaussian noise never comes so far.
+const FAR: f64 = 15.0;
 
 /// From this number on, nothing is left out.
 pub(crate) const QUIET: usize = 100_000;
@@ -356,6 +360,30 @@ impl Case {
         energy.sqrt()
     }
 
+    /// How far an effect stands out where nobody knows the noise: the root of twice its gain in log likelihood, with all other effects
+    /// known.
+    pub(crate) fn evidence(&self, effect: &[f64]) -> f64 {
+        let Some(clean) = self.clean(&self.planted) else { return 0.0 };
+        let (mut gain, mut start) = (0.0, 0);
+        for take in &self.takes {
+            let readings = take.simulated.readings.iter().map(|reading| (&reading.values, true));
+            let drives = take.simulated.actual.iter().flatten().map(|values| (values, false));
+            for ((values, wanders), sigma) in readings.chain(drives).zip(&take.sigmas) {
+                let own = start..start + take.kept.len();
+                start = own.end;
+                let (Some(effect), Some(clean)) = (effect.get(own.clone()), clean.get(own)) else {
+                    return 0.0;
+                };
+                let noise = values.iter().zip(clean).map(|(value, clean)| value / sigma - clean);
+                let near = |noise: f64| if noise.abs() < FAR { noise } else { f64::NAN };
+                let noise: Vec<f64> = noise.map(near).collect();
+                let (time, free) = (&take.simulated.time, &take.free);
+                gain += Channel { time, noise: &noise, effect, free, wanders }.gain();
+            }
+        }
+        gain.max(0.0).sqrt()
+    }
+
     /// The number under which the effects of this case know a sensor.
     pub(crate) fn sensor(&self, name: &str) -> Option<usize> {
         self.base.sensors.index(name)
@@ -406,7 +434,7 @@ impl Case {
                 let noise: Vec<(f64, bool)> = noise
                     .zip(&simulated.run)
                     .map(|(noise, run)| (noise, simulated.holdout.contains(run)))
-                    .filter(|(noise, _)| noise.abs() < 15.0 * sigma)
+                    .filter(|(noise, _)| noise.abs() < FAR * sigma)
                     .collect();
                 let fitted: Vec<f64> =
                     noise.iter().filter(|(_, out)| !out).map(|(noise, _)| *noise).collect();
@@ -482,7 +510,7 @@ fn noise_of(values: &[f64], clean: &[f64]) -> f64 {
         .collect();
     let mut sizes: Vec<f64> = noise.iter().map(|noise| noise.abs()).collect();
     sizes.sort_by(f64::total_cmp);
-    let bound = 15.0 * sizes.get(sizes.len() / 2).copied().unwrap_or(1.0);
+    let bound = FAR * sizes.get(sizes.len() / 2).copied().unwrap_or(1.0);
     let near: Vec<f64> = noise.into_iter().filter(|noise| noise.abs() <= bound).collect();
     let mean = near.iter().sum::<f64>() / near.len().max(1) as f64;
     let square =
@@ -524,7 +552,7 @@ pub(crate) fn dot(left: &[f64], right: &[f64]) -> f64 {
     left.iter().zip(right).map(|(left, right)| left * right).sum()
 }
 
-fn remove(column: &mut [f64], known: &[f64]) {
+pub(crate) fn remove(column: &mut [f64], known: &[f64]) {
     let share = dot(column, known);
     column.iter_mut().zip(known).for_each(|(entry, known)| *entry -= share * known);
 }

@@ -22,6 +22,7 @@ mod bench;
 mod case;
 mod draw;
 mod effect;
+mod evidence;
 mod report;
 mod scene;
 mod score;
@@ -197,12 +198,11 @@ fn verdict_line(case: &Case, diagnosis: &diagnosis::diagnosis::Diagnosis, score:
     if !score.verdict_right {
         text += &format!("VERDICT {} for {:?}; ", score.verdict, case.expected);
     }
-    for ((planted, how), (energy, size)) in
-        case.planted.iter().zip(&score.effects).zip(score.energies.iter().zip(&case.sizes))
-    {
+    let weights = score.energies.iter().zip(&score.evidence).zip(&case.sizes);
+    for ((planted, how), ((energy, evidence), size)) in case.planted.iter().zip(&score.effects).zip(weights) {
         let (motion, term) = planted.name(&case.bench.names);
         text += &format!(
-            "[{motion} {term}{} size {size} energy {energy:.0}: {how:?}] ",
+            "[{motion} {term}{} size {size} energy {energy:.0} evidence {evidence:.0}: {how:?}] ",
             if planted.kind() == "wind-up" { " wind-up" } else { "" }
         );
     }
@@ -212,6 +212,9 @@ fn verdict_line(case: &Case, diagnosis: &diagnosis::diagnosis::Diagnosis, score:
     text += &format!("found [{}] [{}]", found.join(", "), settings.join(", "));
     if !score.wrong.is_empty() {
         text += &format!(" FALSE {}", score.wrong.join(", "));
+        if let Some(evidence) = score.mistaken {
+            text += &format!(" against evidence {evidence:.0}");
+        }
     }
     for held in score.held.iter().filter(|held| held.away.abs() > 3.0) {
         text += &format!(" STRAY {} ({:.1} sigma)", held.told, held.away);

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use crate::case::{Case, Expected, LARGE, SIZES};
 use crate::scene::Noises;
-use crate::score::{How, Score};
+use crate::score::{How, STRONG, Score};
 
 /// A case with its score.
 pub(crate) struct Line {
@@ -20,7 +20,6 @@ struct Count {
     effects: usize,
     found: usize,
     named: usize,
-    /// Effects that stand out of white noise by ten standard deviations in all.
     strong: usize,
     strong_found: usize,
     findings: usize,
@@ -32,7 +31,7 @@ impl Count {
     fn take_effects<'l>(&mut self, effects: impl Iterator<Item = (&'l How, &'l f64)>) {
         for (how, energy) in effects {
             let found = usize::from(*how != How::Missed);
-            let strong = usize::from(*energy > 10.0);
+            let strong = usize::from(*energy > STRONG);
             self.effects += 1;
             self.found += found;
             self.named += usize::from(matches!(how, How::Named | How::Alias));
@@ -100,6 +99,7 @@ pub(crate) fn markdown(lines: &[Line]) -> String {
     text += &by_case(&planted, "recording", |line| format!("{:?}", line.case.scenes[0].kind));
     text += &by_case(&planted, "machine", |line| line.case.bench.name.to_owned());
     text += &by_case(&effective, "what it is", |line| format!("{:?}", line.case.expected));
+    text += &evident(&planted);
     text += &silence(&quiet);
     text += &coverage(lines);
     text += &figures(lines);
@@ -146,6 +146,26 @@ fn by_case(lines: &[&Line], name: &str, key: impl Fn(&Line) -> String) -> String
     let mut text = format!("\n## By {name}\n\n| {name} {HEAD}");
     counts.iter().for_each(|(key, count)| text += &count.line(key));
     text
+}
+
+/// How many effects are found of those that would stand out if nobody knew the noise.
+fn evident(lines: &[&Line]) -> String {
+    let effects = || {
+        let scores = lines.iter().map(|line| &line.score);
+        scores.flat_map(|score| score.energies.iter().zip(&score.evidence).zip(&score.effects))
+    };
+    let strong = effects().filter(|((energy, _), _)| **energy > STRONG).count();
+    let evident = effects().filter(|((_, evidence), _)| **evidence > STRONG);
+    let evident: Vec<bool> = evident.map(|(_, how)| *how != How::Missed).collect();
+    let found = evident.iter().filter(|found| **found).count();
+    let mistaken: Vec<f64> = lines.iter().filter_map(|line| line.score.mistaken).collect();
+    let told = mistaken.iter().filter(|evidence| **evidence > STRONG).count();
+    format!(
+        "\n## Evidence\n\n{} of {strong} effects with an energy above {STRONG:.0} stand out as far where nobody knows the noise; {found}, {}, of them are found. In {told} of {} cases with a false finding the truth stands out as far beside what was found.\n",
+        evident.len(),
+        share(found, evident.len()),
+        mistaken.len()
+    )
 }
 
 fn silence(quiet: &[&Line]) -> String {

@@ -16,6 +16,9 @@ const SAME: f64 = 0.35;
 /// The same where both are curves of one error motion: a table of a few nodes is a polynomial with corners.
 const SAME_CURVE: f64 = 0.6;
 
+/// From this energy on an effect is strong: ten standard deviations of white noise in all.
+pub(crate) const STRONG: f64 = 10.0;
+
 /// How an effect was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum How {
@@ -44,10 +47,14 @@ pub(crate) struct Score {
     pub(crate) effects: Vec<How>,
     /// For each planted effect the root of its energy over the noise's: how far above white noise it stands in all.
     pub(crate) energies: Vec<f64>,
+    /// The same where nobody knows the noise, for the effects that are strong by their energy; 0 for the others.
+    pub(crate) evidence: Vec<f64>,
     /// How many findings there are.
     pub(crate) findings: usize,
     /// Findings that no effect accounts for.
     pub(crate) wrong: Vec<String>,
+    /// How far the truth stands out beside what was claimed where nobody knows the noise, if some of that is wrong.
+    pub(crate) mistaken: Option<f64>,
     pub(crate) held: Vec<Held>,
     /// Sensors, loads and axes that were named wrong.
     pub(crate) misnamed: usize,
@@ -109,12 +116,17 @@ impl Score {
         // The files are right.
         let faults = diagnosis.model.iter().map(|change| format!("{} {}", change.path, change.change));
         let wrong: Vec<String> = false_ones.map(|(claim, _)| weighed(case, claim)).chain(faults).collect();
+        let energies: Vec<f64> = signals.iter().map(|signal| case.energy(signal)).collect();
+        let told =
+            |(energy, signal): (&f64, &Signal)| if *energy > STRONG { case.evidence(signal) } else { 0.0 };
         let mut score = Self {
             verdict: diagnosis.verdict.word(),
             verdict_right: verdict_right(case, diagnosis),
-            energies: signals.iter().map(|signal| case.energy(signal)).collect(),
+            evidence: energies.iter().zip(&signals).map(told).collect(),
+            energies,
             effects,
             findings: claims.len() + diagnosis.model.len(),
+            mistaken: if wrong.is_empty() { None } else { mistaken(case, &claims) },
             wrong,
             held: Vec::new(),
             misnamed: 0,
@@ -241,6 +253,14 @@ fn claim(case: &Case, finding: &Finding) -> Claim {
         signal: case.signal(std::slice::from_ref(&planted)),
         planted: Some(planted),
     }
+}
+
+/// How far the truth stands out beside claims, where each of them can be simulated.
+fn mistaken(case: &Case, claims: &[Claim]) -> Option<f64> {
+    let claimed: Option<Vec<Planted>> = claims.iter().map(|claim| claim.planted.clone()).collect();
+    let (truth, claimed) = (case.signal(&case.planted)?, case.signal(&claimed?)?);
+    let apart: Signal = truth.iter().zip(&claimed).map(|(truth, claimed)| truth - claimed).collect();
+    Some(case.evidence(&apart))
 }
 
 fn weighed(case: &Case, claim: &Claim) -> String {

@@ -126,3 +126,54 @@ fn whitened(time: &[f64], columns: &[&[f64]], noise: Option<Family>) -> (Vec<Vec
     }
     (white, logarithms)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use simulation::noise::Source;
+
+    use super::*;
+
+    const ROWS: usize = 2000;
+
+    /// The gain of an effect of one channel, a row a second.
+    fn gain(noise: &[f64], effect: impl Fn(f64) -> f64) -> f64 {
+        let time: Vec<f64> = (0..ROWS).map(|row| row as f64).collect();
+        let effect: Vec<f64> = time.iter().map(|time| effect(*time)).collect();
+        Channel { time: &time, noise, effect: &effect, free: &[], wanders: true }.gain()
+    }
+
+    fn normals(seed: u64) -> Vec<f64> {
+        let mut source = Source::new(seed, "evidence");
+        (0..ROWS).map(|_| source.normal()).collect()
+    }
+
+    /// What no noise of the family looks like gains its whole energy, where that is little beside all of the noise.
+    #[test]
+    fn a_wave_of_ten_rows_gains_its_energy() {
+        let energy = 0.5 * 0.2 * 0.2 * ROWS as f64;
+        let seeds = 16;
+        let gains = (0..seeds).map(|seed| gain(&normals(seed), |time| 0.2 * (TAU * time / 10.0).sin()));
+        let mean = gains.sum::<f64>() / seeds as f64;
+        // The standard deviation of a gain is twice the root of the energy.
+        let deviation = 2.0 * energy.sqrt() / (seeds as f64).sqrt();
+        assert!((mean - energy).abs() < 3.0 * deviation, "{mean} for {energy}");
+    }
+
+    /// Half a wave over the whole recording gains next to nothing beside a noise that wanders as slowly, however large it is over white noise.
+    #[test]
+    fn what_looks_like_wander_gains_next_to_nothing() {
+        let energy = 0.5 * ROWS as f64;
+        for seed in 0..5 {
+            let mut walked = 0.0;
+            let walk = normals(100 + seed).into_iter().map(|step| {
+                walked += 0.1 * step;
+                walked
+            });
+            let noise: Vec<f64> = normals(seed).iter().zip(walk).map(|(white, walk)| white + walk).collect();
+            let gained = gain(&noise, |time| (0.5 * TAU * time / ROWS as f64).sin());
+            assert!(gained < 0.02 * energy, "{gained} of {energy}");
+        }
+    }
+}

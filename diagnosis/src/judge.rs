@@ -206,7 +206,8 @@ pub(crate) fn shows(energy: f64, of_all: f64) -> bool {
     energy > CRUMB * of_all
 }
 
-/// The share of the energy of an effect from which on a channel shows it: less is a crumb, of which no channel tells anything.
+/// The share of the energy of an effect from which on a channel shows it. Of an effect of ten standard deviations in all, a hundredth of the
+/// energy is one standard deviation: too little to tell anything.
 const CRUMB: f64 = 0.01;
 
 /// Whether effects take more than what still comes back without a name where they show: less may be a piece of that. The harmonics of a

@@ -20,6 +20,7 @@ struct Count {
     effects: usize,
     found: usize,
     named: usize,
+    /// Effects whose energy is above `STRONG`.
     strong: usize,
     strong_found: usize,
     findings: usize,

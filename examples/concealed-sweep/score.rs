@@ -16,7 +16,8 @@ const SAME: f64 = 0.35;
 /// The same where both are curves of one error motion: a table of a few nodes is a polynomial with corners.
 const SAME_CURVE: f64 = 0.6;
 
-/// From this energy on an effect is strong: ten standard deviations of white noise in all.
+/// From this energy on an effect is strong: ten standard deviations of white noise in all, about twice what the penalty for trying many
+/// candidates takes.
 pub(crate) const STRONG: f64 = 10.0;
 
 /// How an effect was found.
